@@ -1,0 +1,90 @@
+// How the host drives a device, whatever it is. The schedule (kernel launches, tasks, compaction) is the backend's own.
+#pragma once
+
+#include "backends/scene_data.hpp"
+
+#include "common/stages/stages.h"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace diptych {
+
+// A batch of work items, at most Plan::items of them, each with `samples` samples a pixel (1 .. QUANTUM).
+struct Dispatch {
+    std::span<const WorkItem> items;
+    int samples = QUANTUM;
+    int pixel_shift = 2 * BLOCK_SHIFT;  // or 0: an item is one pixel
+
+    int paths() const { return int(items.size()) * samples << pixel_shift; }
+    int results() const { return int(items.size()) << pixel_shift; }
+};
+
+// Sums over the samples of each work item, a vector per result row; float3 rows are three planes of `results` entries.
+// The double backend narrows on the way out.
+struct Results {
+#define RESULT_VECTOR(type, name) std::vector<PLANE(type)> name;
+    RESULT_BUFFERS(RESULT_VECTOR)
+#undef RESULT_VECTOR
+};
+
+// The state of all paths of a dispatch after one stage, widened to double; planes in the order of PATH_BUFFERS.
+struct StageState {
+    Stage stage;
+    int bounce;
+    int paths;
+    std::vector<std::vector<double>> planes;  // empty for rows this stage of the pipeline has not defined yet
+};
+
+// What a backend will allocate, known before it does.
+struct Plan {
+    int items = 0;                // work items a dispatch: M = items * QUANTUM << (2 * BLOCK_SHIFT) paths
+    size_t scene_bytes = 0;       // buffers of the scene, on the device
+    size_t path_bytes = 0;        // path state and results
+    size_t structure_bytes = 0;   // acceleration structure beyond scene_bytes, an estimate where a library builds it
+};
+
+// Counted and timed since upload().
+struct Statistics {
+    std::map<std::string, double> stage_seconds;  // summed over threads
+    double setup_seconds = 0;                     // structures, programs
+    unsigned long long rays = 0;
+    unsigned long long shadow_rays = 0;
+    unsigned long long paths = 0;
+};
+
+struct BackendOptions {
+    std::string device;            // index or part of the name; empty: the first that works
+    int threads = 0;               // 0: as many as the machine has
+    size_t memory_bytes = 512u << 20;
+    double launch_milliseconds = 200;
+    bool fast_math = false;        // opencl: allow contraction and native functions
+    bool debug_kernels = false;    // twin: the library built for a debugger
+    std::string plant_fault;       // tests: name of a planted fault, see kernels_cl/faults.h
+};
+
+class Backend {
+public:
+    virtual ~Backend() = default;
+
+    virtual std::string description() const = 0;  // "cpu (Embree 3.13.5, AVX2, 2 threads)"
+    virtual Plan plan(const SceneData& scene) const = 0;
+    virtual void upload(const SceneData& scene) = 0;  // the scene must outlive the backend's use of it
+
+    // Runs every stage for every path. The result of an item does not depend on what else is in the dispatch.
+    virtual void render(const Dispatch& dispatch, Results& results) = 0;
+
+    // The same, stage by stage without compaction, showing the state after each stage; for comparison, not for speed.
+    virtual void trace(const Dispatch& dispatch, const std::function<void(const StageState&)>& after_stage) = 0;
+
+    virtual Statistics statistics() const = 0;
+};
+
+// Names: cpu, opencl, twin, double. Throws std::runtime_error for others, or when the device cannot be used.
+std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);
+
+} // namespace diptych

@@ -1,0 +1,27 @@
+// The only representation of a scene between the loaders and the devices: one vector per scene buffer, ready to upload.
+#pragma once
+
+#include "platform.h"
+
+#include "common/buffers.h"
+#include "common/effects.h"
+
+#include <string>
+#include <vector>
+
+namespace diptych {
+
+struct SceneData {
+#define SCENE_VECTOR(type, name) std::vector<type> name;
+    SCENE_BUFFERS(SCENE_VECTOR)
+#undef SCENE_VECTOR
+    unsigned effects = 0;  // mask of EFFECT_*
+
+    // For people: not uploaded.
+    std::vector<std::string> material_names;
+    std::vector<std::string> instance_names;
+    std::vector<std::string> notices;  // what the loader skipped, replaced or assumed, a line each
+    size_t degenerate_triangles = 0;   // dropped: zero area
+};
+
+} // namespace diptych

@@ -1,0 +1,26 @@
+# What every target of the house has in common. Contraction is off everywhere: a fused multiply-add on one side only would
+# make the two panels differ.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+set(HOUSE_WARNINGS -Wall -Wextra -Wpedantic -Werror)
+set(HOUSE_ARITHMETIC -ffp-contract=off -fno-math-errno -fno-trapping-math)
+
+# house_library(NAME sources...): a static library with the house's warnings and include root.
+function(house_library name)
+  add_library(${name} STATIC ${ARGN})
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_compile_options(${name} PRIVATE ${HOUSE_WARNINGS} ${HOUSE_ARITHMETIC})
+endfunction()
+
+# house_test(NAME LIBRARIES libs... SOURCES sources...): a GoogleTest executable, registered with CTest under its own name.
+function(house_test name)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;SOURCES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main)
+  target_compile_options(${name} PRIVATE ${HOUSE_WARNINGS} ${HOUSE_ARITHMETIC})
+  add_test(NAME ${name} COMMAND ${name})
+endfunction()

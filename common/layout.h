@@ -1,0 +1,176 @@
+// Every struct stored in device memory: int, uint, float, float2 and float4 only, in multiples of 16 bytes, the same
+// bytes for every backend. Angles in radians, colours linear Rec.709, lengths in scene units (metres in glTF).
+#pragma once
+
+// X(struct, bytes): checked by every compiler that sees it.
+#define STORED_STRUCTS(X)  \
+    X(Settings, 256)       \
+    X(Triangle, 16)        \
+    X(Instance, 112)       \
+    X(Material, 128)       \
+    X(TextureSlot, 48)     \
+    X(Image, 16)           \
+    X(Light, 96)           \
+    X(AliasEntry, 16)      \
+    X(BvhNode, 64)         \
+    X(WorkItem, 16)
+
+// One per render.
+typedef struct {
+    float4 camera_origin;   // world space
+    float4 camera_right;    // perspective: image plane at distance 1, half width; orthographic: half width
+    float4 camera_up;       // likewise, half height
+    float4 camera_forward;  // unit length; the camera looks along it
+    float4 environment_x;   // rows of the rotation from world to environment space
+    float4 environment_y;
+    float4 environment_z;
+    float4 environment_scale;  // radiance = texel * scale
+    int camera_kind;           // CAMERA_*
+    int width;                 // of the picture, pixels
+    int height;
+    int max_bounces;           // scattering events; BOUNCES_UNLIMITED for no limit
+    uint seed;
+    int filter;            // FILTER_*
+    int uv_set_count;      // uvs of vertex v, set s: uvs[v * uv_set_count + s]
+    int light_count;       // lights, the environment included
+    int environment_width; // texels of the environment's radiance map; 0 without one
+    int environment_height;
+    int environment_texels;  // index of the first one in texels_float
+    int environment_light;   // index in lights, or -1
+    int cell_columns;        // the environment's importance cells (environment_cells), equal in u and v
+    int cell_rows;
+    float environment_probability;  // of choosing the environment as the light
+    float scene_radius;             // of the bounding sphere
+    float4 scene_centre;
+    float4 reserved[3];
+} Settings;
+
+#define CAMERA_PERSPECTIVE 0
+#define CAMERA_ORTHOGRAPHIC 1
+#define FILTER_BOX 0
+#define FILTER_BLACKMAN_HARRIS 1
+#define BOUNCES_UNLIMITED 0x7fffffff
+
+typedef struct {
+    int vertex0;  // into positions, normals, tangents, uvs, colors
+    int vertex1;
+    int vertex2;
+    int material;
+} Triangle;
+
+// A mesh placed in the world. Instance 0 holds all meshes that appear once, already in world space.
+typedef struct {
+    float4 to_world_x;  // rows of the object-to-world matrix: world.x = dot(to_world_x, (x, y, z, 1))
+    float4 to_world_y;
+    float4 to_world_z;
+    float4 to_object_x;  // rows of its inverse
+    float4 to_object_y;
+    float4 to_object_z;
+    int first_triangle;  // the mesh: a range of triangles
+    int triangle_count;
+    int root_node;   // of the mesh's tree in bvh_nodes
+    int is_mirrored;  // the determinant is negative: the winding that faces front is reversed
+} Instance;
+
+typedef struct {
+    float4 base_color;      // factor; w = alpha
+    float4 emission;        // radiance; w = probability density over area with which light sampling finds a point on it
+    float4 specular_color;  // KHR_materials_specular; w = specular factor
+    float metallic;
+    float roughness;  // perceptual: alpha of the microfacet distribution is its square
+    float dielectric_f0;  // from the index of refraction: ((n - 1) / (n + 1))^2
+    float alpha_cutoff;
+    float normal_scale;
+    int alpha_mode;  // ALPHA_*
+    int flags;       // MATERIAL_*
+    int base_slot;   // texture slots: index into texture_slots, or -1
+    int metallic_roughness_slot;
+    int normal_slot;
+    int emission_slot;
+    int specular_slot;
+    int specular_color_slot;
+    int reserved[3];
+    float4 reserved_effects;
+} Material;
+
+#define ALPHA_OPAQUE 0
+#define ALPHA_MASK 1
+#define ALPHA_BLEND 2
+#define MATERIAL_UNLIT 1
+#define MATERIAL_DOUBLE_SIDED 2
+
+// How a material reads an image: KHR_texture_transform and the sampler folded in.
+typedef struct {
+    int image;   // into images
+    int uv_set;  // 0 .. uv_set_count - 1
+    int wrap;    // WRAP_* of s, plus 4 * WRAP_* of t
+    int filter;  // TEXTURE_NEAREST or TEXTURE_LINEAR
+    float4 to_u;  // image u = to_u.x * u + to_u.y * v + to_u.z
+    float4 to_v;
+} TextureSlot;
+
+#define WRAP_REPEAT 0
+#define WRAP_MIRROR 1
+#define WRAP_CLAMP 2
+#define TEXTURE_NEAREST 0
+#define TEXTURE_LINEAR 1
+
+typedef struct {
+    int width;
+    int height;
+    int first_texel;  // in texels_8 (one uint each, R in the low byte, alpha in the high) or texels_float
+    int encoding;     // TEXELS_*
+} Image;
+
+#define TEXELS_8_LINEAR 0
+#define TEXELS_8_SRGB 1
+#define TEXELS_FLOAT 2
+
+// Something that light sampling can choose.
+typedef struct {
+    float4 position;  // triangle: first corner; point and spot: position; directional: unused (world space)
+    float4 edge1;     // triangle: second corner - first. spot and directional: unit direction in which light travels
+    float4 edge2;     // triangle: third corner - first. spot: x = cos(outer), y = 1 / (cos(inner) - cos(outer))
+    float4 emission;  // triangle: radiance; point and spot: W/sr; directional: W/m^2. w = probability of being chosen
+    int kind;         // LIGHT_*
+    int triangle;     // for textured emission: into triangles
+    int instance;
+    float normal_sign;  // triangle: +1, or -1 when the front is the side that cross(edge1, edge2) points away from
+    float range;        // point and spot: no light beyond it; 0 for no limit
+    float reserved[3];
+} Light;
+
+#define LIGHT_TRIANGLE 0
+#define LIGHT_POINT 1
+#define LIGHT_SPOT 2
+#define LIGHT_DIRECTIONAL 3
+#define LIGHT_ENVIRONMENT 4
+
+// Vose's alias method: column k of n keeps k with probability `threshold`, else gives `alias`.
+typedef struct {
+    float threshold;
+    int alias;
+    float probability;  // of the outcome k in all
+    int reserved;
+} AliasEntry;
+
+// Two children and their boxes: 64 bytes, one cache line.
+typedef struct {
+    float4 x;  // child 0 low, child 0 high, child 1 low, child 1 high
+    float4 y;
+    float4 z;
+    int child[2];  // >= 0: node; < 0: leaf of `count` items beginning at ~child
+    int count[2];
+} BvhNode;
+
+// A quantum of work: up to QUANTUM samples of each pixel of a film block, or of one pixel.
+typedef struct {
+    int x;  // lowest pixel of the block
+    int y;
+    int first_sample;
+    int reserved;
+} WorkItem;
+
+#define BLOCK_SHIFT 4  // film blocks of 16 x 16 pixels, Morton-ordered inside
+#define QUANTUM 16     // samples a pixel in one work item
+
