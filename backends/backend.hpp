@@ -14,7 +14,7 @@
 
 namespace diptych {
 
-// A batch of work items, at most Plan::items of them, each with `samples` samples a pixel (1 .. QUANTUM).
+// A batch of work items, at most Plan::items of them, each with `samples` samples a pixel: a power of two up to QUANTUM.
 struct Dispatch {
     std::span<const WorkItem> items;
     int samples = QUANTUM;
@@ -76,6 +76,7 @@ public:
     virtual void upload(const SceneData& scene) = 0;  // the scene must outlive the backend's use of it
 
     // Runs every stage for every path. The result of an item does not depend on what else is in the dispatch.
+    // Adding samples to a result entry goes in ascending order, from zero (ids from -1).
     virtual void render(const Dispatch& dispatch, Results& results) = 0;
 
     // The same, stage by stage without compaction, showing the state after each stage; for comparison, not for speed.

@@ -83,11 +83,12 @@ typedef struct {
 } Scene;
 
 // The paths of a dispatch, or of a chunk of one, as a kernel sees them. Path i of a dispatch belongs to work item
-// i / (samples << pixel_shift), sample (i >> pixel_shift) % samples of it, and pixel i % (1 << pixel_shift).
+// i / (samples << pixel_shift), sample (i >> pixel_shift) % samples of it, and pixel i % (1 << pixel_shift). A path is
+// alive while its depth, the number of its scattering events, is not negative.
 typedef struct {
     int capacity;       // paths; the distance between the planes of a float3
     int results;        // result entries; likewise
-    int samples;        // samples a pixel in each work item
+    int samples;        // samples a pixel in each work item, a power of two
     int pixel_shift;    // log2 of the pixels in a work item: 2 * BLOCK_SHIFT, or 0 when it is one pixel
     GLOBAL const STORED(WorkItem) * items;
     PATH_BUFFERS(PATH_FIELD)
