@@ -1,4 +1,5 @@
-// How the host drives a device, whatever it is. The schedule (kernel launches, tasks, compaction) is the backend's own.
+// How the host drives a device, whatever it is. The schedule (kernel launches, tasks, compaction)
+// is the backend's own.
 #pragma once
 
 #include "backends/scene_data.hpp"
@@ -14,7 +15,8 @@
 
 namespace diptych {
 
-// A batch of work items, at most Plan::items of them, each with `samples` samples a pixel: a power of two up to QUANTUM.
+// A batch of work items, at most Plan::items of them, each with `samples` samples a pixel: a power
+// of two up to QUANTUM.
 struct Dispatch {
     std::span<const WorkItem> items;
     int samples = QUANTUM;
@@ -24,28 +26,29 @@ struct Dispatch {
     int results() const { return int(items.size()) << pixel_shift; }
 };
 
-// Sums over the samples of each work item, a vector per result row; float3 rows are three planes of `results` entries.
-// The double backend narrows on the way out.
+// Sums over the samples of each work item, a vector per result row; float3 rows are three planes of
+// `results` entries. The double backend narrows on the way out.
 struct Results {
 #define RESULT_VECTOR(type, name) std::vector<PLANE(type)> name;
     RESULT_BUFFERS(RESULT_VECTOR)
 #undef RESULT_VECTOR
 };
 
-// The state of all paths of a dispatch after one stage, widened to double; planes in the order of PATH_BUFFERS.
+// The state of all paths of a dispatch after one stage, widened to double; planes in the order of
+// PATH_BUFFERS.
 struct StageState {
     Stage stage;
     int bounce;
     int paths;
-    std::vector<std::vector<double>> planes;  // empty for rows this stage of the pipeline has not defined yet
+    std::vector<std::vector<double>> planes;  // empty for rows that no stage so far has defined
 };
 
 // What a backend will allocate, known before it does.
 struct Plan {
-    int items = 0;                // work items a dispatch: M = items * QUANTUM << (2 * BLOCK_SHIFT) paths
-    size_t scene_bytes = 0;       // buffers of the scene, on the device
-    size_t path_bytes = 0;        // path state and results
-    size_t structure_bytes = 0;   // acceleration structure beyond scene_bytes, an estimate where a library builds it
+    int items = 0;  // work items a dispatch: M = items * QUANTUM << (2 * BLOCK_SHIFT) paths
+    size_t scene_bytes = 0;      // buffers of the scene, on the device
+    size_t path_bytes = 0;       // path state and results
+    size_t structure_bytes = 0;  // acceleration structure, estimated where a library builds it
 };
 
 // Counted and timed since upload().
@@ -58,13 +61,13 @@ struct Statistics {
 };
 
 struct BackendOptions {
-    std::string device;            // index or part of the name; empty: the first that works
-    int threads = 0;               // 0: as many as the machine has
+    std::string device;  // index or part of the name; empty: the first that works
+    int threads = 0;     // 0: as many as the machine has
     size_t memory_bytes = 512u << 20;
     double launch_milliseconds = 200;
-    bool fast_math = false;        // opencl: allow contraction and native functions
-    bool debug_kernels = false;    // twin: the library built for a debugger
-    std::string plant_fault;       // tests: name of a planted fault, see kernels_cl/faults.h
+    bool fast_math = false;      // opencl: allow contraction and native functions
+    bool debug_kernels = false;  // twin: the library built for a debugger
+    std::string plant_fault;     // tests: name of a planted fault, see kernels_cl/faults.h
 };
 
 class Backend {
@@ -73,19 +76,22 @@ public:
 
     virtual std::string description() const = 0;  // "cpu (Embree 3.13.5, AVX2, 2 threads)"
     virtual Plan plan(const SceneData& scene) const = 0;
-    virtual void upload(const SceneData& scene) = 0;  // the scene must outlive the backend's use of it
+    virtual void upload(const SceneData& scene) = 0;  // the scene must outlive its use here
 
-    // Runs every stage for every path. The result of an item does not depend on what else is in the dispatch.
-    // Adding samples to a result entry goes in ascending order, from zero (ids from -1).
+    // Runs every stage for every path. The result of an item does not depend on what else is in the
+    // dispatch. Adding samples to a result entry goes in ascending order, from zero (ids from -1).
     virtual void render(const Dispatch& dispatch, Results& results) = 0;
 
-    // The same, stage by stage without compaction, showing the state after each stage; for comparison, not for speed.
-    virtual void trace(const Dispatch& dispatch, const std::function<void(const StageState&)>& after_stage) = 0;
+    // The same, stage by stage without compaction, showing the state after each stage; for
+    // comparison, not for speed.
+    virtual void trace(const Dispatch& dispatch,
+                       const std::function<void(const StageState&)>& after_stage) = 0;
 
     virtual Statistics statistics() const = 0;
 };
 
-// Names: cpu, opencl, twin, double. Throws std::runtime_error for others, or when the device cannot be used.
+// Names: cpu, opencl, twin, double. Throws std::runtime_error for others, or when the device cannot
+// be used.
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);
 
-} // namespace diptych
+}  // namespace diptych

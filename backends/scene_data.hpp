@@ -1,4 +1,5 @@
-// The only representation of a scene between the loaders and the devices: one vector per scene buffer, ready to upload.
+// The only representation of a scene between the loaders and the devices: one vector per scene
+// buffer, ready to upload.
 #pragma once
 
 #include "platform.h"
@@ -24,4 +25,4 @@ struct SceneData {
     size_t degenerate_triangles = 0;   // dropped: zero area
 };
 
-} // namespace diptych
+}  // namespace diptych

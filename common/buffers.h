@@ -1,27 +1,28 @@
-// Every buffer of the renderer, one row each; views, upload and argument binding are expanded from the rows.
+// Every buffer of the renderer, one row each; views, upload and argument binding are expanded from
+// the rows.
 #pragma once
 
 #include "common/layout.h"
 
 // Read only, filled by the host once a render. X(element type, name)
-#define SCENE_BUFFERS(X)              \
-    X(Settings, settings)             \
-    X(float4, positions)              \
-    X(uint, normals)                  \
-    X(uint, tangents)                 \
-    X(float2, uvs)                    \
-    X(float4, colors)                 \
-    X(Triangle, triangles)            \
-    X(Instance, instances)            \
-    X(Material, materials)            \
-    X(TextureSlot, texture_slots)     \
-    X(Image, images)                  \
-    X(uint, texels_8)                 \
-    X(float4, texels_float)           \
-    X(Light, lights)                  \
-    X(AliasEntry, light_choice)       \
-    X(AliasEntry, environment_cells)  \
-    X(BvhNode, bvh_nodes)             \
+#define SCENE_BUFFERS(X)             \
+    X(Settings, settings)            \
+    X(float4, positions)             \
+    X(uint, normals)                 \
+    X(uint, tangents)                \
+    X(float2, uvs)                   \
+    X(float4, colors)                \
+    X(Triangle, triangles)           \
+    X(Instance, instances)           \
+    X(Material, materials)           \
+    X(TextureSlot, texture_slots)    \
+    X(Image, images)                 \
+    X(uint, texels_8)                \
+    X(float4, texels_float)          \
+    X(Light, lights)                 \
+    X(AliasEntry, light_choice)      \
+    X(AliasEntry, environment_cells) \
+    X(BvhNode, bvh_nodes)            \
     X(int, bvh_items)
 
 // State of the paths in flight, in planes: one array per component. X(type, name, life)
@@ -61,7 +62,8 @@
     X(int, first_object, sample)          \
     X(int, first_material, sample)
 
-// What a dispatch leaves for the host: sums over the samples of a work item, one entry a pixel of the item.
+// What a dispatch leaves for the host: sums over the samples of a work item, one entry a pixel of
+// the item.
 #define RESULT_BUFFERS(X)   \
     X(float3, sum_radiance) \
     X(float, sum_alpha)     \
@@ -82,36 +84,39 @@ typedef struct {
     SCENE_BUFFERS(SCENE_FIELD)
 } Scene;
 
-// The paths of a dispatch, or of a chunk of one, as a kernel sees them. Path i of a dispatch belongs to work item
-// i / (samples << pixel_shift), sample (i >> pixel_shift) % samples of it, and pixel i % (1 << pixel_shift). A path is
-// alive while its depth, the number of its scattering events, is not negative.
+// The paths of a dispatch, or of a chunk of one, as a kernel sees them. Path i of a dispatch
+// belongs to work item i / (samples << pixel_shift), sample (i >> pixel_shift) % samples of it, and
+// pixel i % (1 << pixel_shift). A path is alive while its depth, the number of its scattering
+// events, is not negative.
 typedef struct {
-    int capacity;       // paths; the distance between the planes of a float3
-    int results;        // result entries; likewise
-    int samples;        // samples a pixel in each work item, a power of two
-    int pixel_shift;    // log2 of the pixels in a work item: 2 * BLOCK_SHIFT, or 0 when it is one pixel
+    int capacity;     // paths; the distance between the planes of a float3
+    int results;      // result entries; likewise
+    int samples;      // samples a pixel in each work item, a power of two
+    int pixel_shift;  // log2 of the pixels in a work item: 2 * BLOCK_SHIFT, or 0 when it is one
+                      // pixel
     GLOBAL const STORED(WorkItem) * items;
     PATH_BUFFERS(PATH_FIELD)
     RESULT_BUFFERS(RESULT_FIELD)
 } Paths;
 
 // get_NAME(paths, i) and set_NAME(paths, i, value) for every row.
-#define ACCESS_float(name, stride)                                                                             \
-    SHARED float get_##name(const Paths* paths, int i) { return paths->name[i]; }                              \
+#define ACCESS_float(name, stride)                                                \
+    SHARED float get_##name(const Paths* paths, int i) { return paths->name[i]; } \
     SHARED void set_##name(const Paths* paths, int i, float value) { paths->name[i] = value; }
-#define ACCESS_int(name, stride)                                                                               \
-    SHARED int get_##name(const Paths* paths, int i) { return paths->name[i]; }                                \
+#define ACCESS_int(name, stride)                                                \
+    SHARED int get_##name(const Paths* paths, int i) { return paths->name[i]; } \
     SHARED void set_##name(const Paths* paths, int i, int value) { paths->name[i] = value; }
-#define ACCESS_float3(name, stride)                                                                            \
-    SHARED float3 get_##name(const Paths* paths, int i)                                                        \
-    {                                                                                                          \
-        return make_float3(paths->name[i], paths->name[paths->stride + i], paths->name[2 * paths->stride + i]);\
-    }                                                                                                          \
-    SHARED void set_##name(const Paths* paths, int i, float3 value)                                            \
-    {                                                                                                          \
-        paths->name[i] = value.x;                                                                              \
-        paths->name[paths->stride + i] = value.y;                                                              \
-        paths->name[2 * paths->stride + i] = value.z;                                                          \
+#define ACCESS_float3(name, stride)                                        \
+    SHARED float3 get_##name(const Paths* paths, int i)                    \
+    {                                                                      \
+        return make_float3(paths->name[i], paths->name[paths->stride + i], \
+                           paths->name[2 * paths->stride + i]);            \
+    }                                                                      \
+    SHARED void set_##name(const Paths* paths, int i, float3 value)        \
+    {                                                                      \
+        paths->name[i] = value.x;                                          \
+        paths->name[paths->stride + i] = value.y;                          \
+        paths->name[2 * paths->stride + i] = value.z;                      \
     }
 #define PATH_ACCESS(type, name, life) ACCESS_##type(name, capacity)
 #define RESULT_ACCESS(type, name) ACCESS_##type(name, results)

@@ -1,24 +1,25 @@
-// Every struct stored in device memory: int, uint, float, float2 and float4 only, in multiples of 16 bytes, the same
-// bytes for every backend. Angles in radians, colours linear Rec.709, lengths in scene units (metres in glTF).
+// Every struct stored in device memory: int, uint, float, float2 and float4 only, in multiples of
+// 16 bytes, the same bytes for every backend. Angles in radians, colours linear Rec.709, lengths in
+// scene units (metres in glTF).
 #pragma once
 
 // X(struct, bytes): checked by every compiler that sees it.
-#define STORED_STRUCTS(X)  \
-    X(Settings, 256)       \
-    X(Triangle, 16)        \
-    X(Instance, 112)       \
-    X(Material, 128)       \
-    X(TextureSlot, 48)     \
-    X(Image, 16)           \
-    X(Light, 96)           \
-    X(AliasEntry, 16)      \
-    X(BvhNode, 64)         \
+#define STORED_STRUCTS(X) \
+    X(Settings, 256)      \
+    X(Triangle, 16)       \
+    X(Instance, 112)      \
+    X(Material, 128)      \
+    X(TextureSlot, 48)    \
+    X(Image, 16)          \
+    X(Light, 96)          \
+    X(AliasEntry, 16)     \
+    X(BvhNode, 64)        \
     X(WorkItem, 16)
 
 // One per render.
 typedef struct {
     float4 camera_origin;   // world space
-    float4 camera_right;    // perspective: image plane at distance 1, half width; orthographic: half width
+    float4 camera_right;    // half width of the image, in a perspective at distance 1
     float4 camera_up;       // likewise, half height
     float4 camera_forward;  // unit length; the camera looks along it
     float4 environment_x;   // rows of the rotation from world to environment space
@@ -28,16 +29,16 @@ typedef struct {
     int camera_kind;           // CAMERA_*
     int width;                 // of the picture, pixels
     int height;
-    int max_bounces;           // scattering events; BOUNCES_UNLIMITED for no limit
+    int max_bounces;  // scattering events; BOUNCES_UNLIMITED for no limit
     uint seed;
-    int filter;            // FILTER_*
-    int uv_set_count;      // uvs of vertex v, set s: uvs[v * uv_set_count + s]
-    int light_count;       // lights, the environment included
-    int environment_width; // texels of the environment's radiance map; 0 without one
+    int filter;             // FILTER_*
+    int uv_set_count;       // uvs of vertex v, set s: uvs[v * uv_set_count + s]
+    int light_count;        // lights, the environment included
+    int environment_width;  // texels of the environment's radiance map; 0 without one
     int environment_height;
     int environment_texels;  // index of the first one in texels_float
     int environment_light;   // index in lights, or -1
-    int cell_columns;        // the environment's importance cells (environment_cells), equal in u and v
+    int cell_columns;  // the environment's importance cells (environment_cells), equal in u and v
     int cell_rows;
     float environment_probability;  // of choosing the environment as the light
     float scene_radius;             // of the bounding sphere
@@ -60,7 +61,7 @@ typedef struct {
 
 // A mesh placed in the world. Instance 0 holds all meshes that appear once, already in world space.
 typedef struct {
-    float4 to_world_x;  // rows of the object-to-world matrix: world.x = dot(to_world_x, (x, y, z, 1))
+    float4 to_world_x;  // rows of object-to-world: world.x = dot(to_world_x, (x, y, z, 1))
     float4 to_world_y;
     float4 to_world_z;
     float4 to_object_x;  // rows of its inverse
@@ -68,16 +69,17 @@ typedef struct {
     float4 to_object_z;
     int first_triangle;  // the mesh: a range of triangles
     int triangle_count;
-    int root_node;   // of the mesh's tree in bvh_nodes
+    int root_node;    // of the mesh's tree in bvh_nodes
     int is_mirrored;  // the determinant is negative: the winding that faces front is reversed
 } Instance;
 
 typedef struct {
-    float4 base_color;      // factor; w = alpha
-    float4 emission;        // radiance; w = probability density over area with which light sampling finds a point on it
+    float4 base_color;  // factor; w = alpha
+    float4 emission;  // radiance; w = probability density over area with which light sampling finds
+                      // a point on it
     float4 specular_color;  // KHR_materials_specular; w = specular factor
     float metallic;
-    float roughness;  // perceptual: alpha of the microfacet distribution is its square
+    float roughness;      // perceptual: alpha of the microfacet distribution is its square
     float dielectric_f0;  // from the index of refraction: ((n - 1) / (n + 1))^2
     float alpha_cutoff;
     float normal_scale;
@@ -101,10 +103,10 @@ typedef struct {
 
 // How a material reads an image: KHR_texture_transform and the sampler folded in.
 typedef struct {
-    int image;   // into images
-    int uv_set;  // 0 .. uv_set_count - 1
-    int wrap;    // WRAP_* of s, plus 4 * WRAP_* of t
-    int filter;  // TEXTURE_NEAREST or TEXTURE_LINEAR
+    int image;    // into images
+    int uv_set;   // 0 .. uv_set_count - 1
+    int wrap;     // WRAP_* of s, plus 4 * WRAP_* of t
+    int filter;   // TEXTURE_NEAREST or TEXTURE_LINEAR
     float4 to_u;  // image u = to_u.x * u + to_u.y * v + to_u.z
     float4 to_v;
 } TextureSlot;
@@ -118,7 +120,7 @@ typedef struct {
 typedef struct {
     int width;
     int height;
-    int first_texel;  // in texels_8 (one uint each, R in the low byte, alpha in the high) or texels_float
+    int first_texel;  // in texels_8 (a uint each: R low byte, alpha high) or texels_float
     int encoding;     // TEXELS_*
 } Image;
 
@@ -128,14 +130,19 @@ typedef struct {
 
 // Something that light sampling can choose.
 typedef struct {
-    float4 position;  // triangle: first corner; point and spot: position; directional: unused (world space)
-    float4 edge1;     // triangle: second corner - first. spot and directional: unit direction in which light travels
-    float4 edge2;     // triangle: third corner - first. spot: x = cos(outer), y = 1 / (cos(inner) - cos(outer))
-    float4 emission;  // triangle: radiance; point and spot: W/sr; directional: W/m^2. w = probability of being chosen
+    float4 position;  // triangle: first corner; point and spot: position; directional: unused
+                      // (world space)
+    float4 edge1;  // triangle: second corner - first. spot and directional: unit direction in which
+                   // light travels
+    float4 edge2;  // triangle: third corner - first. spot: x = cos(outer), y = 1 / (cos(inner) -
+                   // cos(outer))
+    float4 emission;  // triangle: radiance; point and spot: W/sr; directional: W/m^2. w =
+                      // probability of being chosen
     int kind;         // LIGHT_*
     int triangle;     // for textured emission: into triangles
     int instance;
-    float normal_sign;  // triangle: +1, or -1 when the front is the side that cross(edge1, edge2) points away from
+    float normal_sign;  // triangle: +1, or -1 when the front is the side that cross(edge1, edge2)
+                        // points away from
     float range;        // point and spot: no light beyond it; 0 for no limit
     float reserved[3];
 } Light;
@@ -173,4 +180,3 @@ typedef struct {
 
 #define BLOCK_SHIFT 4  // film blocks of 16 x 16 pixels, Morton-ordered inside
 #define QUANTUM 16     // samples a pixel in one work item
-

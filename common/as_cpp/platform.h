@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <cstring>
 
-// Not inlining one shared function keeps a whole stage from being vectorised; the build sets ALWAYS_INLINE to the
-// compiler's attribute, or to nothing for kernels meant to be stepped in a debugger.
+// Not inlining one shared function keeps a whole stage from being vectorised; the build sets
+// ALWAYS_INLINE to the compiler's attribute, or to nothing for kernels meant to be stepped in a
+// debugger.
 #define SHARED [[maybe_unused]] static inline ALWAYS_INLINE
 #define GLOBAL
 #define CONSTANT static const
@@ -15,7 +16,8 @@
 #define PLANE_OF_float3 float
 #define PLANE_OF_int int
 #define PLANE_OF_uint uint
-#define LAYOUT_CHECK(type, bytes) static_assert(sizeof(type) == (bytes), #type " must be " #bytes " bytes on every device");
+#define LAYOUT_CHECK(type, bytes) \
+    static_assert(sizeof(type) == (bytes), #type " must be " #bytes " bytes on every device");
 
 #define PI 3.14159265358979323846f
 #define INV_PI 0.31830988618379067154f

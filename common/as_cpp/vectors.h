@@ -1,5 +1,5 @@
-// Vector types with the names and the arithmetic of OpenCL C. Included by both C++ dialects (twice by as_double, where `float`
-// is widened the second time), hence without a guard.
+// Vector types with the names and the arithmetic of OpenCL C. Included by both C++ dialects (twice
+// by as_double, where `float` is widened the second time), hence without a guard.
 
 typedef unsigned int uint;
 

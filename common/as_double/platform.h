@@ -1,5 +1,6 @@
-// The reference dialect: the same sources with `float` widened to double and the C library's mathematics, so that the
-// difference between two pictures measures what single precision costs. Stored scene data keep their layout.
+// The reference dialect: the same sources with `float` widened to double and the C library's
+// mathematics, so that the difference between two pictures measures what single precision costs.
+// Stored scene data keep their layout.
 #pragma once
 
 #include <bit>
@@ -15,7 +16,8 @@
 #define PLANE_OF_float3 double
 #define PLANE_OF_int int
 #define PLANE_OF_uint uint
-#define LAYOUT_CHECK(type, bytes) static_assert(sizeof(type) == (bytes), #type " must be " #bytes " bytes on every device");
+#define LAYOUT_CHECK(type, bytes) \
+    static_assert(sizeof(type) == (bytes), #type " must be " #bytes " bytes on every device");
 
 #define PI 3.14159265358979323846
 #define INV_PI 0.31830988618379067154
@@ -29,7 +31,7 @@
 namespace stored {
 #include "common/as_cpp/vectors.h"
 #include "common/layout.h"
-}
+}  // namespace stored
 #define STORED_int int
 #define STORED_uint uint
 using STORED_float = float;

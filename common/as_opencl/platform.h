@@ -1,4 +1,5 @@
-// The OpenCL C 1.2 dialect of the shared sources: what as_cpp/platform.h teaches C++, OpenCL mostly knows.
+// The OpenCL C 1.2 dialect of the shared sources: what as_cpp/platform.h teaches C++, OpenCL mostly
+// knows.
 #pragma once
 
 #pragma OPENCL FP_CONTRACT OFF
@@ -12,7 +13,8 @@
 #define PLANE_OF_float3 float
 #define PLANE_OF_int int
 #define PLANE_OF_uint uint
-#define LAYOUT_CHECK(type, bytes) typedef char type##_layout_check[sizeof(type) == (bytes) ? 1 : -1];
+#define LAYOUT_CHECK(type, bytes) \
+    typedef char type##_layout_check[sizeof(type) == (bytes) ? 1 : -1];
 
 #define PI 3.14159265358979323846f
 #define INV_PI 0.31830988618379067154f

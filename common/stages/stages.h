@@ -6,20 +6,22 @@
 #define LIGHT_EFFECTS (EFFECT_EMISSION | EFFECT_PUNCTUAL_LIGHTS | EFFECT_ENVIRONMENT)
 
 // X(name, body, when, needs)
-//   body: shared - common/stages/NAME.h, the same source on every backend; native - written for each kind of device
-//   when: once - at the start; each_bounce - until no path is alive; first_bounce - in the
-//         first of these only, at its place in the order; at_end - over result entries, not paths
-//   needs: effects of which the scene must call for one, else the stage is neither compiled nor launched; 0: always
-#define STAGES(X)                                                                     \
-    X(generate_paths, shared, once, 0)                                                \
-    X(intersect, native, each_bounce, 0)                                              \
-    X(evaluate_surface, shared, each_bounce, 0)                                       \
-    X(record_features, shared, first_bounce, 0)                                       \
-    X(add_emission, shared, each_bounce, LIGHT_EFFECTS | EFFECT_UNLIT)                \
-    X(sample_light, shared, each_bounce, LIGHT_EFFECTS)                               \
-    X(occlusion, native, each_bounce, LIGHT_EFFECTS)                                  \
-    X(sample_bsdf, shared, each_bounce, 0)                                            \
-    X(compact, native, each_bounce, 0)                                                \
+//   body: shared - common/stages/NAME.h, the same source on every backend;
+//         native - written for each kind of device
+//   when: once - at the start; each_bounce - until no path is alive; first_bounce - in the first of
+//         these only, at its place in the order; at_end - over result entries, not paths
+//   needs: effects of which the scene must call for one, else the stage is neither compiled nor
+//         launched; 0: always
+#define STAGES(X)                                                      \
+    X(generate_paths, shared, once, 0)                                 \
+    X(intersect, native, each_bounce, 0)                               \
+    X(evaluate_surface, shared, each_bounce, 0)                        \
+    X(record_features, shared, first_bounce, 0)                        \
+    X(add_emission, shared, each_bounce, LIGHT_EFFECTS | EFFECT_UNLIT) \
+    X(sample_light, shared, each_bounce, LIGHT_EFFECTS)                \
+    X(occlusion, native, each_bounce, LIGHT_EFFECTS)                   \
+    X(sample_bsdf, shared, each_bounce, 0)                             \
+    X(compact, native, each_bounce, 0)                                 \
     X(accumulate, shared, at_end, 0)
 
 #define STAGE_NUMBER(name, body, when, needs) STAGE_##name,
