@@ -13,6 +13,7 @@
 #define CONSTANT static const
 #define PLANE(type) PLANE_OF_##type
 #define PLANE_OF_float double
+#define PLANE_OF_double double
 #define PLANE_OF_float3 double
 #define PLANE_OF_int int
 #define PLANE_OF_uint uint
