@@ -24,3 +24,18 @@ function(house_test name)
   target_compile_options(${name} PRIVATE ${HOUSE_WARNINGS} ${HOUSE_ARITHMETIC})
   add_test(NAME ${name} COMMAND ${name})
 endfunction()
+
+# Takes folders that do not exist off an imported target's include path: Debian's OpenImageIO names OpenCV's, whether
+# OpenCV is installed or not, and CMake stops at that.
+function(house_drop_missing_includes target)
+  foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES)
+    get_target_property(folders ${target} ${property})
+    set(present)
+    foreach(folder IN LISTS folders)
+      if(EXISTS "${folder}")
+        list(APPEND present "${folder}")
+      endif()
+    endforeach()
+    set_target_properties(${target} PROPERTIES ${property} "${present}")
+  endforeach()
+endfunction()
