@@ -52,6 +52,10 @@ typedef struct {
 #define FILTER_BLACKMAN_HARRIS 1
 #define BOUNCES_UNLIMITED 0x7fffffff
 
+// In normals: the vertex belongs to a flat surface, use the face normal. No packed normal has these
+// bits: -32768 is not an octahedral coordinate.
+#define NORMAL_FLAT 0x80008000u
+
 typedef struct {
     int vertex0;  // into positions, normals, tangents, uvs, colors
     int vertex1;

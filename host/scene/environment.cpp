@@ -1,0 +1,171 @@
+// The environment: its radiance map and the cells by which light sampling finds its bright parts.
+#include "host/scene/alias_table.hpp"
+#include "host/scene/scene_assembly.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace diptych {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int most_cell_columns = 1024;
+constexpr int most_cell_rows = 512;
+
+// Part of a cell's weight that follows the brightest texel reaching into it rather than the mean,
+// so that a bright corner is never much rarer than it is bright.
+constexpr double peak_share = 0.05;
+
+// The texels whose linear filter reaches into an interval of cell `cell` of `cells`, and the part
+// that each has in the interval's mean.
+struct Footprint {
+    int first;
+    std::vector<double> shares;
+};
+
+// Integral of the filter's hat from -1 to t.
+double hat_integral(double t)
+{
+    t = std::clamp(t, -1.0, 1.0);
+    return t < 0 ? (1 + t) * (1 + t) / 2 : 1 - (1 - t) * (1 - t) / 2;
+}
+
+Footprint footprint(int cell, int cells, int texels)
+{
+    const double low = double(cell) * texels / cells, high = double(cell + 1) * texels / cells;
+    Footprint f{int(std::floor(low - 0.5)), {}};
+    const int last = int(std::ceil(high + 0.5)) - 1;
+    for (int t = f.first; t <= last; ++t) {
+        const double centre = t + 0.5;
+        f.shares.push_back((hat_integral(high - centre) - hat_integral(low - centre)) /
+                           (high - low));
+    }
+    return f;
+}
+
+std::vector<float> luminance_map(const Picture& map)
+{
+    std::vector<float> result(size_t(map.width) * size_t(map.height));
+    for (size_t t = 0; t < result.size(); ++t) {
+        const float* texel = &map.floats[4 * t];
+        result[t] = float(luminance(texel[0], texel[1], texel[2]));
+    }
+    return result;
+}
+
+// Mean and peak of the filtered luminance over a cell; columns wrap, rows end at the poles.
+struct CellBrightness {
+    double mean = 0;
+    double peak = 0;
+};
+
+CellBrightness brightness(const std::vector<float>& map, int width, int height,
+                          const Footprint& across, const Footprint& down)
+{
+    CellBrightness result;
+    for (size_t j = 0; j < down.shares.size(); ++j) {
+        const int row = std::clamp(down.first + int(j), 0, height - 1);
+        for (size_t i = 0; i < across.shares.size(); ++i) {
+            const int column = ((across.first + int(i)) % width + width) % width;
+            const double value = map[size_t(row) * size_t(width) + size_t(column)];
+            result.mean += value * across.shares[i] * down.shares[j];
+            result.peak = std::max(result.peak, value);
+        }
+    }
+    return result;
+}
+
+// Linear floats, whatever the file held.
+Picture linear_map(const Picture& map)
+{
+    Picture result = map;
+    if (map.is_8_bit()) {
+        result.floats.resize(map.bytes.size());
+        for (size_t k = 0; k < map.bytes.size(); ++k) {
+            const float value = float(map.bytes[k]) / 255;
+            result.floats[k] = k % 4 == 3 ? value : srgb_decode(value);
+        }
+        result.bytes.clear();
+    } else if (map.is_integer) {
+        for (size_t k = 0; k < map.floats.size(); ++k) {
+            if (k % 4 != 3) {
+                result.floats[k] = srgb_decode(map.floats[k]);
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+double assemble_environment(const Picture& file, double rotation, float scale, SceneData& data)
+{
+    const Picture map = linear_map(file);
+    Settings& s = data.settings[0];
+    const double c = std::cos(rotation), n = std::sin(rotation);
+    s.environment_x = {float(c), 0, float(-n), 0};
+    s.environment_y = {0, 1, 0, 0};
+    s.environment_z = {float(n), 0, float(c), 0};
+    s.environment_scale = {scale, scale, scale, 0};
+    s.environment_width = map.width;
+    s.environment_height = map.height;
+    s.environment_texels = int(data.texels_float.size());
+    for (size_t t = 0; t < map.floats.size(); t += 4) {
+        data.texels_float.push_back(
+            {map.floats[t], map.floats[t + 1], map.floats[t + 2], map.floats[t + 3]});
+    }
+
+    const int columns = std::min(map.width, most_cell_columns);
+    const int rows = std::min(map.height, most_cell_rows);
+    const std::vector<float> bright = luminance_map(map);
+    std::vector<Footprint> across;
+    for (int column = 0; column < columns; ++column) {
+        across.push_back(footprint(column, columns, map.width));
+    }
+    std::vector<double> weights;
+    weights.reserve(size_t(columns) * size_t(rows));
+    double integral = 0;
+    for (int row = 0; row < rows; ++row) {
+        const Footprint down = footprint(row, rows, map.height);
+        const double solid_angle =
+            2 * pi / columns * (std::cos(pi * row / rows) - std::cos(pi * (row + 1) / rows));
+        for (int column = 0; column < columns; ++column) {
+            const CellBrightness cell =
+                brightness(bright, map.width, map.height, across[size_t(column)], down);
+            weights.push_back((cell.mean + peak_share * cell.peak) * solid_angle);
+            integral += cell.mean * solid_angle;
+        }
+    }
+    data.environment_cells = alias_table(weights);
+    s.cell_columns = data.environment_cells.empty() ? 0 : columns;
+    s.cell_rows = data.environment_cells.empty() ? 0 : rows;
+    if (file.bad_texels > 0) {
+        data.notices.push_back("environment: " + std::to_string(file.bad_texels) +
+                               " values were NaN, infinite or negative; they were replaced");
+    }
+    return integral * scale;
+}
+
+Picture neutral_sky()
+{
+    constexpr int width = 32, height = 64;
+    Picture sky{width, height, {}, {}, false, 0};
+    const auto mix = [](double a, double b, double t) { return float(a + (b - a) * t); };
+    for (int row = 0; row < height; ++row) {
+        const double up = std::cos(pi * (row + 0.5) / height);
+        const double t = up > 0 ? std::sqrt(up) : std::min(1.0, -8 * up);
+        for (int column = 0; column < width; ++column) {
+            if (up > 0) {
+                sky.floats.insert(sky.floats.end(),
+                                  {mix(1.0, 0.62, t), mix(1.0, 0.72, t), mix(1.0, 0.88, t), 1});
+            } else {
+                sky.floats.insert(sky.floats.end(),
+                                  {mix(1.0, 0.30, t), mix(1.0, 0.29, t), mix(1.0, 0.28, t), 1});
+            }
+        }
+    }
+    return sky;
+}
+
+}  // namespace diptych

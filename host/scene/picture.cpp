@@ -1,0 +1,215 @@
+#include "host/scene/picture.hpp"
+
+#include "host/scene/scene_error.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <memory>
+
+namespace diptych {
+namespace {
+
+// Its messages are many lines at times; an error here is one.
+std::string one_line(std::string text)
+{
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) < ' ') {
+            c = ' ';
+        }
+    }
+    while (!text.empty() && text.back() == ' ') {
+        text.pop_back();
+    }
+    return text.empty() ? "the reason is not known" : text;
+}
+
+void check_spec(const OIIO::ImageSpec& spec, const std::string& where, size_t max_pixels)
+{
+    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) {
+        throw SceneError(fmt::format("{}: an image of {} x {} pixels; replace the image", where,
+                                     spec.width, spec.height));
+    }
+    if (spec.depth > 1) {
+        throw SceneError(where + ": a volume, not an image; replace the image");
+    }
+    const auto pixels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
+    if (pixels > max_pixels || spec.nchannels > 64) {
+        throw SceneError(fmt::format("{}: an image of {} x {} pixels with {} channels is beyond "
+                                     "the limit of {} pixels; use a smaller image or raise the "
+                                     "limit",
+                                     where, spec.width, spec.height, spec.nchannels, max_pixels));
+    }
+}
+
+// Channels in the order R, G, B, A, a grey image repeated: where each comes from, -1 for opaque.
+std::array<int, 4> channel_order(const OIIO::ImageSpec& spec)
+{
+    const auto find = [&](const char* name) {
+        const auto& names = spec.channelnames;
+        const auto at = std::find(names.begin(), names.end(), name);
+        return at == names.end() ? -1 : int(at - names.begin());
+    };
+    const int alpha = spec.alpha_channel >= 0 ? spec.alpha_channel : find("A");
+    if (find("R") >= 0 && find("G") >= 0 && find("B") >= 0) {
+        return {find("R"), find("G"), find("B"), alpha};
+    }
+    const int colors = spec.nchannels - (alpha >= 0 ? 1 : 0);
+    if (colors >= 3) {
+        return {0, 1, 2, alpha};
+    }
+    const int grey = alpha == 0 ? 1 : 0;
+    if (colors == 0) {
+        return {alpha, alpha, alpha, alpha};
+    }
+    return {grey, grey, grey, alpha};
+}
+
+template<typename T>
+std::vector<T> reordered(const std::vector<T>& values, int channels,
+                         const std::array<int, 4>& order, T opaque)
+{
+    const size_t texels = values.size() / size_t(channels);
+    std::vector<T> result(4 * texels);
+    for (size_t t = 0; t < texels; ++t) {
+        for (size_t c = 0; c < 4; ++c) {
+            result[4 * t + c] =
+                order[c] < 0 ? opaque : values[t * size_t(channels) + size_t(order[c])];
+        }
+    }
+    return result;
+}
+
+// No texel of a scene may be NaN, infinite or negative.
+size_t sanitize(std::vector<float>& values)
+{
+    size_t replaced = 0;
+    float largest = 0;
+    for (const float v : values) {
+        if (std::isfinite(v)) {
+            largest = std::max(largest, v);
+        }
+    }
+    for (float& v : values) {
+        if (v >= 0 && std::isfinite(v)) {
+            continue;
+        }
+        v = v > 0 ? largest : 0;  // v > 0 is false for NaN
+        ++replaced;
+    }
+    return replaced;
+}
+
+Picture read_pixels(OIIO::ImageInput& input, const std::string& where, size_t max_pixels)
+{
+    const OIIO::ImageSpec spec = input.spec();
+    check_spec(spec, where, max_pixels);
+    const size_t values = size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels);
+    const auto order = channel_order(spec);
+    Picture picture;
+    picture.width = spec.width;
+    picture.height = spec.height;
+    picture.is_integer = !spec.format.is_floating_point();
+    const auto fail = [&] {
+        throw SceneError(fmt::format("{}: cannot be decoded ({}); replace the image", where,
+                                     one_line(input.geterror())));
+    };
+    if (spec.format == OIIO::TypeDesc::UINT8) {
+        std::vector<std::uint8_t> bytes(values);
+        if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, bytes.data())) {
+            fail();
+        }
+        picture.bytes = reordered<std::uint8_t>(bytes, spec.nchannels, order, 255);
+    } else {
+        std::vector<float> floats(values);
+        if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, floats.data())) {
+            fail();
+        }
+        picture.floats = reordered<float>(floats, spec.nchannels, order, 1.0f);
+        picture.bad_texels = sanitize(picture.floats);
+    }
+    return picture;
+}
+
+OIIO::ImageSpec reading_hints()
+{
+    OIIO::ImageSpec hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1);  // glTF: straight alpha
+    hints.attribute("oiio:reorient", 0);
+    return hints;
+}
+
+// The file extension that goes with the first bytes: OpenImageIO picks a reader of memory by name.
+const char* kind_of(std::span<const std::uint8_t> b)
+{
+    const auto starts = [&](std::initializer_list<int> magic, size_t at = 0) {
+        return b.size() >= at + magic.size() &&
+               std::equal(magic.begin(), magic.end(), b.begin() + std::ptrdiff_t(at),
+                          [](int m, std::uint8_t x) { return m == x; });
+    };
+    if (starts({0x89, 'P', 'N', 'G'})) {
+        return "png";
+    }
+    if (starts({0xff, 0xd8, 0xff})) {
+        return "jpg";
+    }
+    if (starts({'R', 'I', 'F', 'F'}) && starts({'W', 'E', 'B', 'P'}, 8)) {
+        return "webp";
+    }
+    if (starts({0x76, 0x2f, 0x31, 0x01})) {
+        return "exr";
+    }
+    if (starts({'#', '?'})) {
+        return "hdr";
+    }
+    if (starts({'I', 'I', 42, 0}) || starts({'M', 'M', 0, 42})) {
+        return "tif";
+    }
+    if (starts({'B', 'M'})) {
+        return "bmp";
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+Picture read_picture(const std::filesystem::path& file, const std::string& where, size_t max_pixels)
+{
+    const OIIO::ImageSpec hints = reading_hints();
+    auto input = OIIO::ImageInput::open(file.string(), &hints);
+    if (!input) {
+        throw SceneError(fmt::format("{}: cannot be read as an image ({}); replace the file", where,
+                                     one_line(OIIO::geterror())));
+    }
+    return read_pixels(*input, where, max_pixels);
+}
+
+Picture read_picture(std::span<const std::uint8_t> bytes, const std::string& where,
+                     size_t max_pixels)
+{
+    const char* kind = kind_of(bytes);
+    if (!kind) {
+        throw SceneError(where + ": its first bytes are of no known image format; use PNG or JPEG");
+    }
+    OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
+    const OIIO::ImageSpec hints = reading_hints();
+    const std::string name = std::string("memory.") + kind;
+    auto input = OIIO::ImageInput::open(name, &hints, &memory);
+    if (!input) {
+        throw SceneError(fmt::format("{}: cannot be decoded ({}); replace the image", where,
+                                     one_line(OIIO::geterror())));
+    }
+    return read_pixels(*input, where, max_pixels);
+}
+
+float srgb_decode(float encoded)
+{
+    return encoded <= 0.04045f ? encoded / 12.92f
+                               : float(std::pow((double(encoded) + 0.055) / 1.055, 2.4));
+}
+
+}  // namespace diptych
