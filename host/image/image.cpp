@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace diptych {
+namespace diptych::image {
 
 Layer beauty_layer(std::vector<float> rgba)
 {
@@ -49,4 +49,4 @@ const Layer& beauty_of(const Picture& picture)
     return *layer;
 }
 
-} // namespace diptych
+} // namespace diptych::image

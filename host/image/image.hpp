@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace diptych {
+namespace diptych::image {
 
 // One named group of channels, pixel by pixel, rows from the top: `pixels` for quantities, `ids` for whole numbers
 // (object and material ids, sample counts). Exactly one of the two is filled, width * height * channels.size() long.
@@ -78,4 +78,4 @@ struct ReadLimits {
 // cannot be read whole.
 Picture read_picture(const std::string& path, const ReadLimits& limits = {});
 
-} // namespace diptych
+} // namespace diptych::image

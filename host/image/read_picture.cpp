@@ -1,5 +1,7 @@
 #include "host/image/image.hpp"
+#include "host/image/picture_guard.hpp"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -10,7 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
-namespace diptych {
+namespace diptych::image {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,13 +25,13 @@ using OIIO::TypeDesc;
     throw std::runtime_error(path + ": " + what);
 }
 
-// Libraries report over several lines; ours are one.
-std::string one_line(std::string text)
+// Libraries report over several lines and repeat the path; ours is one line that starts with it.
+std::string reason(const std::string& path, std::string text)
 {
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    for (size_t at; (at = text.find(path)) != std::string::npos;) text.replace(at, path.size(), "it");
     for (char& c : text)
-        if (static_cast<unsigned char>(c) < ' ') c = ' ';
+        if (c < ' ' || c > '~') c = ' ';
+    while (!text.empty() && text.back() == ' ') text.pop_back();
     return text.empty() ? "no reason given" : text;
 }
 
@@ -174,7 +176,7 @@ private:
                               ? input_.read_tiles(part_, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z,
                                                   spec_.z + 1, 0, spec_.nchannels, type, out)
                               : input_.read_scanlines(part_, 0, y0, y1, spec_.z, 0, spec_.nchannels, type, out);
-        if (!good) fail(path_, "corrupt or cut short (" + one_line(input_.geterror()) + ")");
+        if (!good) fail(path_, "corrupt or cut short (" + reason(path_, input_.geterror()) + ")");
     }
 
     const std::string& path_;
@@ -231,29 +233,40 @@ void read_metadata(const ImageSpec& spec, Picture& picture)
             picture.metadata[attribute.name().string()] = attribute.get_string();
 }
 
-std::unique_ptr<ImageInput> open(const std::string& path)
+// An open file with the memory it reads from.
+struct OpenPicture {
+    GuardedFile file;
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
+    std::unique_ptr<ImageInput> input;
+};
+
+OpenPicture open(const std::string& path, const ReadLimits& limits)
 {
-    std::error_code error;
-    if (!fs::exists(path, error)) fail(path, "no such file");
-    if (!fs::is_regular_file(path, error)) fail(path, "is not a file; name a picture");
-    if (fs::file_size(path, error) == 0) fail(path, "is empty");
-    ImageSpec wishes;
+    OpenPicture open{guard_picture(path, limits), nullptr, nullptr};
+    open.input = ImageInput::create(open.file.reader);
+    if (!open.input) fail(path, fmt::format("this OpenImageIO has no reader for {} files", open.file.reader));
+    if (!open.file.bytes.empty()) {
+        open.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(open.file.bytes.data(), open.file.bytes.size());
+        open.input->set_ioproxy(open.memory.get());
+    }
+    ImageSpec spec, wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);  // display values stay as they are stored
-    auto input = ImageInput::open(path, &wishes);
-    if (!input) fail(path, "cannot be read as a picture (" + one_line(OIIO::geterror()) + ")");
-    return input;
+    if (!open.input->open(path, spec, wishes))
+        fail(path, "cannot be read (" + reason(path, open.input->geterror()) + ")");
+    return open;
 }
 
 Picture read_all(const std::string& path, const ReadLimits& limits)
 {
-    const auto input = open(path);
+    const OpenPicture opened = open(path, limits);
+    ImageInput* const input = opened.input.get();
     Picture picture;
     const ImageSpec first = input->spec();
     // Only an EXR file's further parts are layers of the same picture; elsewhere they are frames, pages and thumbnails.
     const bool parts = std::strcmp(input->format_name(), "openexr") == 0;
     for (int part = 0; part == 0 || (parts && input->seek_subimage(part, 0)); ++part) {
         const ImageSpec spec = input->spec(part);
-        if (spec.undefined()) fail(path, "corrupt (" + one_line(input->geterror()) + ")");
+        if (spec.undefined()) fail(path, "corrupt (" + reason(path, input->geterror()) + ")");
         if (part > 0 && (spec.full_width != first.full_width || spec.full_height != first.full_height || spec.deep))
             continue;
         check_size(path, spec, limits);
@@ -280,4 +293,4 @@ Picture read_picture(const std::string& path, const ReadLimits& limits)
     }
 }
 
-} // namespace diptych
+} // namespace diptych::image

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace diptych {
+namespace diptych::image {
 
 float srgb_encode(float linear)
 {
@@ -78,4 +78,4 @@ Rgb display_value(Rgb radiance, float exposure, View view)
     return radiance;
 }
 
-} // namespace diptych
+} // namespace diptych::image

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace diptych {
+namespace diptych::image {
 
 using Rgb = std::array<float, 3>;
 
@@ -19,4 +19,4 @@ Rgb view_filmic(Rgb color);   // Stephen Hill's fit of the ACES RRT and sRGB ODT
 // sRGB values in 0..1 of linear radiance, 2^exposure times as bright.
 Rgb display_value(Rgb radiance, float exposure, View view);
 
-} // namespace diptych
+} // namespace diptych::image

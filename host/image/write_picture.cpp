@@ -16,7 +16,7 @@
 #include <system_error>
 #include <unistd.h>
 
-namespace diptych {
+namespace diptych::image {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ void check_writable(const std::string& path)
     TemporaryFile probe(path);
 }
 
-} // namespace diptych
+} // namespace diptych::image
