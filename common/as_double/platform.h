@@ -68,3 +68,5 @@ SHARED float math_log(float x) { return std::log(x); }
 SHARED float math_log2(float x) { return std::log2(x); }
 SHARED float math_pow(float x, float y) { return std::pow(x, y); }
 SHARED float math_cbrt(float x) { return std::cbrt(x); }
+
+#include "common/math.h"
