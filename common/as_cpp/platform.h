@@ -37,9 +37,6 @@ SHARED float math_sqrt(float x) { return __builtin_sqrtf(x); }
 SHARED float math_abs(float x) { return __builtin_fabsf(x); }
 SHARED float math_floor(float x) { return __builtin_floorf(x); }
 
-// The upper half of the 64-bit product.
-SHARED uint uint_multiply_high(uint a, uint b) { return (uint)(((std::uint64_t)a * b) >> 32); }
-
 #include "common/elementary.h"
 
 #include "common/math.h"

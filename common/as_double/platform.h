@@ -46,7 +46,7 @@ STORED_STRUCTS(STORED_NAME)
 #define float double
 #include "common/as_cpp/vectors.h"
 
-SHARED float3 xyz(const stored::float4& v) { return float3{v.x, v.y, v.z}; }
+SHARED float3 xyz(stored::float4 v) { return float3{v.x, v.y, v.z}; }
 
 SHARED int as_int(STORED_float x) { return std::bit_cast<int>(x); }
 SHARED uint as_uint(STORED_float x) { return std::bit_cast<uint>(x); }
@@ -68,5 +68,7 @@ SHARED float math_log(float x) { return std::log(x); }
 SHARED float math_log2(float x) { return std::log2(x); }
 SHARED float math_pow(float x, float y) { return std::pow(x, y); }
 SHARED float math_cbrt(float x) { return std::cbrt(x); }
+SHARED float math_sinpi(float x) { return std::sin(PI * std::fmod(x, 2.0)); }
+SHARED float math_cospi(float x) { return std::cos(PI * std::fmod(x, 2.0)); }
 
 #include "common/math.h"

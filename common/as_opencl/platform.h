@@ -32,7 +32,6 @@ SHARED float3 xyz(float4 v) { return v.xyz; }
 SHARED float math_sqrt(float x) { return sqrt(x); }
 SHARED float math_abs(float x) { return fabs(x); }
 SHARED float math_floor(float x) { return floor(x); }
-SHARED uint uint_multiply_high(uint a, uint b) { return mul_hi(a, b); }
 
 #include "common/elementary.h"
 

@@ -1,4 +1,4 @@
-// Sine, cosine and tangent.
+// Sine, cosine and tangent; sine and cosine of multiples of pi.
 #pragma once
 
 #include "common/elementary/bits.h"
@@ -38,18 +38,35 @@ SHARED Angle angle_reduce(float x)
     const uint w1 = (b1 << left) | ((b2 >> 1) >> right);
     const uint w2 = (b2 << left) | ((b3 >> 1) >> right);
 
-    // m * (w0 w1 w2) modulo 2^96, without its last word: 2 bits of quadrant, 62 of fraction.
+    // m * (w0 w1 w2) modulo 2^96, without its last word: 2 bits of quadrant, 62 of fraction. In
+    // halves, because vector units multiply 32 bits by 32 to 32; the sum of the lowest products
+    // leaves out a carry of less than 2 in 2^62.
+    const uint m_low = m & 0xffffu;
+    const uint m_high = m >> 16;
+    const uint w2_high = w2 >> 16;
+    const uint p2 =
+        m_high * w2_high + ((m_low * w2_high) >> 16) + ((m_high * (w2 & 0xffffu)) >> 16);
+    const uint w1_low = w1 & 0xffffu;
+    const uint w1_high = w1 >> 16;
+    const uint inner = m_low * w1_high + ((m_low * w1_low) >> 16);
+    const uint outer = m_high * w1_low + (inner & 0xffffu);
+    const uint p1 = m_high * w1_high + (inner >> 16) + (outer >> 16);
     const uint middle = m * w1;
-    const uint low = middle + uint_multiply_high(m, w2);
-    const uint high = m * w0 + uint_multiply_high(m, w1) + (low < middle ? 1u : 0u);
+    const uint low = middle + p2;
+    const uint high = m * w0 + p1 + (low < middle ? 1u : 0u);
     const uint quadrant = (high + 0x20000000u) >> 30;
-    const float fraction =
-        (float)(int)(high - (quadrant << 30)) + (float)(int)(low >> 1) * 4.65661287e-10f;
 
+    // fraction * pi/2, the leading 12 bits apart, so that only the last sum rounds.
+    const int fraction = (int)(high - (quadrant << 30));
+    const int leading = (fraction + 0x20000) >> 18;
+    const float trailing =
+        (float)(fraction - (leading * 0x40000)) + (float)(int)(low >> 1) * 4.65661287e-10f;
+    const float rest = (float)leading * 0.000383377075f +
+                       ((float)leading * 1.18121775e-07f + trailing * 1.46291812e-09f);
     const int is_reduced = x < 0.785398185f;
     Angle angle;
     angle.quadrant = is_reduced ? 0u : quadrant;
-    angle.rest = is_reduced ? x : fraction * 1.46291808e-09f;  // pi/2 * 2^-30
+    angle.rest = is_reduced ? x : rest;
     return angle;
 }
 
@@ -96,4 +113,41 @@ SHARED float math_tan(float x)
     const int is_odd = (angle.quadrant & 1u) != 0u;
     const float value = (is_odd ? -c : s) / (is_odd ? s : c);
     return math_abs(x) < FLOAT_INFINITY ? float_flip(value, as_uint(x) & 0x80000000u) : FLOAT_NAN;
+}
+
+// sinpi and cospi share: 2x rounded, and pi times what remains. From 2^24 on every float is an even
+// integer; so, here, are infinities and NaN.
+SHARED Angle angle_of_pi_multiple(float x)
+{
+    const float a = x < 16777216.0f ? x : 0.0f;
+    // A little less than a half, lest an odd 2a of 24 bits be rounded up.
+    const float n = math_floor(2.0f * a + 0.49999997f);
+    Angle angle;
+    angle.quadrant = (uint)(int)n & 3u;
+    angle.rest = (a - 0.5f * n) * 3.14159274f;
+    return angle;
+}
+
+// sin(pi * x), within 2 ulp; exact at multiples of a half, zero with the sign of x at integers.
+// Three times as fast as math_sin: sin(2 pi u) is math_sinpi(2 u).
+SHARED float math_sinpi(float x)
+{
+    const Angle angle = angle_of_pi_multiple(math_abs(x));
+    const float s = sine_rest(angle.rest);
+    const float c = cosine_rest(angle.rest);
+    const float value = (angle.quadrant & 1u) != 0u ? c : s;
+    const uint turn = value == 0.0f ? 0u : (angle.quadrant & 2u) << 30;
+    const uint sign = (as_uint(x) & 0x80000000u) ^ turn;
+    return math_abs(x) < FLOAT_INFINITY ? float_flip(value, sign) : FLOAT_NAN;
+}
+
+// cos(pi * x), within 2 ulp; exact at multiples of a half, +0 where it is zero.
+SHARED float math_cospi(float x)
+{
+    const Angle angle = angle_of_pi_multiple(math_abs(x));
+    const float s = sine_rest(angle.rest);
+    const float c = cosine_rest(angle.rest);
+    const float value = (angle.quadrant & 1u) != 0u ? s : c;
+    const uint sign = value == 0.0f ? 0u : ((angle.quadrant + 1u) & 2u) << 30;
+    return math_abs(x) < FLOAT_INFINITY ? float_flip(value, sign) : FLOAT_NAN;
 }
