@@ -1,5 +1,6 @@
 // Every struct stored in device memory: int, uint, float, float2 and float4 only, in multiples of
-// 16 bytes, the same bytes for every backend. Angles in radians, colours linear Rec.709, lengths in
+// 16 bytes, the same bytes for every backend. Structs that kernels gather from are a power of two long: a vector unit scales an index by a
+// shift, not by a 64-bit multiplication. Angles in radians, colours linear Rec.709, lengths in
 // scene units (metres in glTF).
 #pragma once
 
@@ -7,11 +8,11 @@
 #define STORED_STRUCTS(X) \
     X(Settings, 256)      \
     X(Triangle, 16)       \
-    X(Instance, 112)      \
+    X(Instance, 128)      \
     X(Material, 128)      \
-    X(TextureSlot, 48)    \
+    X(TextureSlot, 64)    \
     X(Image, 16)          \
-    X(Light, 96)          \
+    X(Light, 128)         \
     X(AliasEntry, 16)     \
     X(BvhNode, 64)        \
     X(WorkItem, 16)
@@ -75,6 +76,7 @@ typedef struct {
     int triangle_count;
     int root_node;    // of the mesh's tree in bvh_nodes
     int is_mirrored;  // the determinant is negative: the winding that faces front is reversed
+    float4 reserved;
 } Instance;
 
 typedef struct {
@@ -113,6 +115,7 @@ typedef struct {
     int filter;   // TEXTURE_NEAREST or TEXTURE_LINEAR
     float4 to_u;  // image u = to_u.x * u + to_u.y * v + to_u.z
     float4 to_v;
+    float4 reserved;
 } TextureSlot;
 
 #define WRAP_REPEAT 0
@@ -149,6 +152,7 @@ typedef struct {
                         // points away from
     float range;        // point and spot: no light beyond it; 0 for no limit
     float reserved[3];
+    float4 reserved_shapes[2];
 } Light;
 
 #define LIGHT_TRIANGLE 0
@@ -170,9 +174,25 @@ typedef struct {
     float4 x;  // child 0 low, child 0 high, child 1 low, child 1 high
     float4 y;
     float4 z;
-    int child[2];  // >= 0: node; < 0: leaf of `count` items beginning at ~child
-    int count[2];
+    int child[2];  // >= 0: a node; < 0: a leaf, see below; BVH_NONE with an empty box: nothing
+    int reserved[2];
 } BvhNode;
+
+// A leaf is a range of bvh_items: triangles in the tree of a mesh, one instance in the top level.
+#define BVH_LEAF(first, count) (~((first) << 3 | ((count)-1)))
+#define BVH_LEAF_FIRST(leaf) (~(leaf) >> 3)
+#define BVH_LEAF_COUNT(leaf) ((~(leaf)&7) + 1)
+#define BVH_LEAF_MAX 8
+#define BVH_NONE (-0x7fffffff - 1)
+
+// Inner nodes on the way to any leaf, at most: the builder keeps to it, the walk's stack relies on
+// it.
+#define BVH_TOP_DEPTH 24
+#define BVH_MESH_DEPTH 40
+#define BVH_STACK 64  // the sum
+
+// By how much a box exceeds what is in it, of the extent of the latter.
+#define BVH_PADDING 1e-6f
 
 // A quantum of work: up to QUANTUM samples of each pixel of a film block, or of one pixel.
 typedef struct {
