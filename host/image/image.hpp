@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace diptych::image {
@@ -65,7 +66,7 @@ void write_picture(const std::string& path, const Picture& picture, const WriteO
 void check_writable(const std::string& path);
 
 // Puts bytes at a path by way of a temporary name in the same folder; for any file that must not be half-written.
-void write_file_whole(const std::string& path, const void* bytes, size_t size);
+void write_file_whole(const std::string& path, std::string_view bytes);
 
 struct ReadLimits {
     uint64_t pixels = 1ull << 28;   // 16384 x 16384

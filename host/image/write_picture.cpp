@@ -73,9 +73,9 @@ public:
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-    void write(const void* bytes, size_t size)
+    void write(std::string_view bytes)
     {
-        const bool written = std::fwrite(bytes, 1, size, file_) == size && std::fflush(file_) == 0;
+        const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size() && std::fflush(file_) == 0;
         const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
         if (!written || !closed)
             fail(path_, fmt::format("could not be written whole ({}); nothing was replaced", std::strerror(errno)));
@@ -244,13 +244,13 @@ void write_picture(const std::string& path, const Picture& picture, const WriteO
     check_layers(path, picture);
     const bool exr = encoder_of(path) == "openexr";
     const auto bytes = exr ? encode_exr(path, picture, options) : encode_display(path, picture, options);
-    write_file_whole(path, bytes.data(), bytes.size());
+    write_file_whole(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-void write_file_whole(const std::string& path, const void* bytes, size_t size)
+void write_file_whole(const std::string& path, std::string_view bytes)
 {
     TemporaryFile file(path);
-    file.write(bytes, size);
+    file.write(bytes);
     file.put_in_place();
 }
 
