@@ -1,4 +1,6 @@
 // The environment: its radiance map and the cells by which light sampling finds its bright parts.
+#include "host/scene/environment.hpp"
+
 #include "host/scene/alias_table.hpp"
 #include "host/scene/scene_assembly.hpp"
 

@@ -155,19 +155,19 @@ const char* kind_of(std::span<const std::uint8_t> b)
         return "png";
     }
     if (starts({0xff, 0xd8, 0xff})) {
-        return "jpg";
+        return "jpeg";
     }
     if (starts({'R', 'I', 'F', 'F'}) && starts({'W', 'E', 'B', 'P'}, 8)) {
         return "webp";
     }
     if (starts({0x76, 0x2f, 0x31, 0x01})) {
-        return "exr";
+        return "openexr";
     }
     if (starts({'#', '?'})) {
         return "hdr";
     }
     if (starts({'I', 'I', 42, 0}) || starts({'M', 'M', 0, 42})) {
-        return "tif";
+        return "tiff";
     }
     if (starts({'B', 'M'})) {
         return "bmp";
@@ -196,12 +196,15 @@ Picture read_picture(std::span<const std::uint8_t> bytes, const std::string& whe
         throw SceneError(where + ": its first bytes are of no known image format; use PNG or JPEG");
     }
     OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-    const OIIO::ImageSpec hints = reading_hints();
-    const std::string name = std::string("memory.") + kind;
-    auto input = OIIO::ImageInput::open(name, &hints, &memory);
-    if (!input) {
+    // The reader is chosen by the bytes, not by a name, and gets them through the hints.
+    OIIO::ImageSpec hints = reading_hints();
+    void* proxy = &memory;
+    hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    auto input = OIIO::ImageInput::create(kind);
+    OIIO::ImageSpec spec;
+    if (!input || !input->open(std::string("memory.") + kind, spec, hints)) {
         throw SceneError(fmt::format("{}: cannot be decoded ({}); replace the image", where,
-                                     one_line(OIIO::geterror())));
+                                     one_line(input ? input->geterror() : OIIO::geterror())));
     }
     return read_pixels(*input, where, max_pixels);
 }

@@ -1,5 +1,6 @@
 #include "host/scene/scene_assembly.hpp"
 
+#include "host/scene/environment.hpp"
 #include "host/scene/tangents.hpp"
 
 #include <algorithm>

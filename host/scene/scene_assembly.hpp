@@ -76,13 +76,6 @@ private:
     double environment_power_ = 0;  // luminance of its radiance, over all directions; 0 without
 };
 
-// Mean over the sphere etc. are derived from the map: fills the environment's settings, texels and
-// importance cells, and returns the integral of its luminance over all directions.
-double assemble_environment(const Picture& map, double rotation, float scale, SceneData& data);
-
-// A neutral gradient: soft white at the horizon, a little blue above, grey ground.
-Picture neutral_sky();
-
 inline double luminance(double r, double g, double b)
 {
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;

@@ -1,0 +1,66 @@
+// A glTF file opened: its checked model, and its buffers and images, read when they are asked for.
+#pragma once
+
+#include "host/scene/picture.hpp"
+
+#include <map>
+#include <span>
+#include <string>
+#include <tiny_gltf.h>
+#include <vector>
+
+namespace diptych {
+
+// Under this name among the attributes the model holds indices that come from a sparse accessor
+// without a buffer view, which the parser would refuse as indices.
+inline constexpr const char* implied_indices_key = "_INDICES";
+
+class GltfDocument {
+public:
+    // Reads .gltf and .glb, told apart by their first bytes. URIs may not leave the file's folder
+    // unless `allow_outside`. Throws SceneError.
+    GltfDocument(const std::filesystem::path& file, bool allow_outside);
+
+    // Without buffers and images, which are had from the functions below. Indices and declared
+    // sizes in it have been checked (gltf_check.hpp).
+    const tinygltf::Model& model() const { return model_; }
+
+    std::span<const std::uint8_t> buffer_view(int view);
+    // Image `image` of the file; `where` names its user in errors.
+    Picture image(int image, const std::string& where, size_t max_pixels);
+    void release_buffers() { buffers_.clear(); }
+
+    // About extensions that are used but not simulated, animations, skins, morph targets.
+    const std::vector<std::string>& notices() const { return notices_; }
+
+private:
+    struct Source {
+        std::string uri;
+        size_t byte_length = 0;
+        int buffer_view = -1;
+    };
+
+    void parse(const std::string& text);
+    const std::vector<std::uint8_t>& buffer(int index);
+    std::filesystem::path resolved(const std::string& uri, const std::string& where) const;
+
+    std::filesystem::path folder_;
+    bool allow_outside_;
+    tinygltf::Model model_;
+    std::vector<std::string> notices_;
+    std::vector<Source> buffer_sources_;
+    std::vector<Source> image_sources_;
+    std::map<int, std::vector<std::uint8_t>> buffers_;
+    std::vector<std::uint8_t> binary_chunk_;
+    bool has_binary_chunk_ = false;
+};
+
+// Values of an accessor as floats, `components` an element (a VEC3 read as 4 gets `fill` last);
+// normalised, strided and sparse ones resolved. `where` names the use in errors.
+std::vector<float> accessor_floats(GltfDocument& document, int accessor, int components, float fill,
+                                   const std::string& where);
+// Of a SCALAR accessor of an unsigned type.
+std::vector<unsigned> accessor_indices(GltfDocument& document, int accessor,
+                                       const std::string& where);
+
+}  // namespace diptych

@@ -1,0 +1,81 @@
+#include "host/scene/load.hpp"
+
+#include "host/scene/environment.hpp"
+#include "host/scene/gltf_loader.hpp"
+#include "host/scene/uri.hpp"
+
+#include <fmt/format.h>
+#include <new>
+
+namespace diptych {
+namespace {
+
+Vec3 to_vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+void apply_options(SceneBuilder& scene, const LoadOptions& options)
+{
+    scene.set_picture_size(options.width, options.height);
+    scene.disable_effects(options.disabled_effects);
+    if (options.has_view) {
+        scene.set_camera({.eye = to_vec(options.eye),
+                          .target = to_vec(options.target),
+                          .up = to_vec(options.up),
+                          .fov = options.fov});
+    }
+    if (options.environment == "none") {
+        return;
+    }
+    if (!options.environment.empty()) {
+        const std::filesystem::path file = options.environment;
+        if (!std::filesystem::is_regular_file(file)) {
+            throw SceneError(printable(options.environment) +
+                             ": no such file; name a latitude-longitude image for the environment");
+        }
+        scene.set_environment(
+            read_picture(file, printable(options.environment), options.max_image_pixels),
+            options.environment_rotation, options.environment_scale);
+    } else if (!scene.has_lights()) {
+        scene.set_environment(neutral_sky(), options.environment_rotation,
+                              options.environment_scale);
+        scene.notice("lights: none in the scene; a neutral sky lights it");
+    }
+}
+
+SceneData load_scene(const std::filesystem::path& file, const LoadOptions& options)
+{
+    const std::string name = printable(file.filename().string());
+    const auto fail = [&](const std::string& what) {
+        throw SceneError((name.empty() ? printable(file.string()) : name) + ": " + what);
+    };
+    SceneBuilder scene;
+    try {
+        GltfDocument document(file, options.allow_outside);
+        for (const std::string& line : document.notices()) {
+            scene.notice(line);
+        }
+        GltfLoader(document, options, scene).run();
+    } catch (const SceneError& error) {
+        fail(error.what());
+    } catch (const std::bad_alloc&) {
+        fail("memory: not enough for this scene; use a smaller one");
+    } catch (const std::length_error&) {
+        fail("memory: not enough for this scene; use a smaller one");
+    } catch (const std::exception& error) {
+        fail("document: " + printable(error.what()) + "; repair the file");
+    }
+    apply_options(scene, options);
+    try {
+        SceneData data = scene.finish();
+        if (data.triangles.empty()) {
+            data.notices.push_back("scene: it has no triangles; only its background is visible");
+        }
+        return data;
+    } catch (const SceneError& error) {
+        fail(error.what());
+    }
+    return {};
+}
+
+}  // namespace diptych
