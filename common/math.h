@@ -7,6 +7,10 @@
 SHARED float math_min(float a, float b) { return a < b ? a : (b == b ? b : a); }
 SHARED float math_max(float a, float b) { return a > b ? a : (b == b ? b : a); }
 
+// The same in one comparison, for kernels: the second operand if either is NaN.
+SHARED float math_lesser(float a, float b) { return a < b ? a : b; }
+SHARED float math_greater(float a, float b) { return a > b ? a : b; }
+
 // `low` if x is NaN.
 SHARED float math_clamp(float x, float low, float high)
 {
@@ -35,8 +39,8 @@ SHARED float3 vec_cross(float3 a, float3 b)
 
 SHARED float vec_length(float3 v) { return math_sqrt(vec_dot(v, v)); }
 
-// Unit length; zero stays zero. The squares must be neither overflow nor vanish: components between
-// 1e-18 and 1e18.
+// Unit length; zero stays zero. For lengths between 1e-18 and 1e18, whose squares are normal
+// floats.
 SHARED float3 vec_normalize(float3 v)
 {
     const float length = vec_length(v);
@@ -58,7 +62,7 @@ SHARED float3 vec_max(float3 a, float3 b)
 {
     return make_float3(math_max(a.x, b.x), math_max(a.y, b.y), math_max(a.z, b.z));
 }
-SHARED float vec_max_component(float3 v) { return math_max(math_max(v.x, v.y), v.z); }
+SHARED float vec_max_component(float3 v) { return math_greater(math_greater(v.x, v.y), v.z); }
 SHARED float vec_min_component(float3 v) { return math_min(math_min(v.x, v.y), v.z); }
 
 // Of a linear Rec.709 colour.
@@ -93,10 +97,13 @@ SHARED uint snorm16_pack(float x)
 {
     return (uint)(int)math_floor(math_clamp(x, -1.0f, 1.0f) * 32767.0f + 0.5f) & 0xffffu;
 }
-SHARED float snorm16_unpack(uint bits) { return (float)((int)(bits << 16) >> 16) / 32767.0f; }
+SHARED float snorm16_unpack(uint bits)
+{
+    return (float)((int)(bits << 16) >> 16) * 3.05185094e-05f;
+}
 
 // A direction in 32 bits: the octahedron |x| + |y| + |z| = 1, its lower half folded over the upper,
-// as two 16-bit fractions; off by at most 4e-5 rad. v need not have unit length; zero becomes +z.
+// as two 16-bit fractions; off by at most 7e-5 rad. v need not have unit length; zero becomes +z.
 SHARED uint normal_pack(float3 v)
 {
     const float sum = math_abs(v.x) + math_abs(v.y) + math_abs(v.z);
