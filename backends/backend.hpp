@@ -76,7 +76,9 @@ public:
 
     virtual std::string description() const = 0;  // "cpu (Embree 3.13.5, AVX2, 2 threads)"
     virtual Plan plan(const SceneData& scene) const = 0;
-    virtual void upload(const SceneData& scene) = 0;  // the scene must outlive its use here
+    // Completes the scene with the trees that the device walks, if it does. The scene must outlive
+    // the backend's use of it.
+    virtual void upload(SceneData& scene) = 0;
 
     // Runs every stage for every path. The result of an item does not depend on what else is in the
     // dispatch. Adding samples to a result entry goes in ascending order, from zero (ids from -1).

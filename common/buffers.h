@@ -46,6 +46,7 @@
     X(float3, normal, bounce)             \
     X(float3, base_color, bounce)         \
     X(float3, emission, bounce)           \
+    X(float, emission_pdf, bounce)        \
     X(float, metallic, bounce)            \
     X(float, roughness, bounce)           \
     X(float3, dielectric_f0, bounce)      \
@@ -94,6 +95,7 @@ typedef struct {
     int samples;      // samples a pixel in each work item, a power of two
     int pixel_shift;  // log2 of the pixels in a work item: 2 * BLOCK_SHIFT, or 0 when it is one
                       // pixel
+    int turn;  // at_end stages run once for each sample of a pixel, in ascending order: which one
     GLOBAL const STORED(WorkItem) * items;
     PATH_BUFFERS(PATH_FIELD)
     RESULT_BUFFERS(RESULT_FIELD)

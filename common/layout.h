@@ -1,7 +1,7 @@
 // Every struct stored in device memory: int, uint, float, float2 and float4 only, in multiples of
-// 16 bytes, the same bytes for every backend. Structs that kernels gather from are a power of two long: a vector unit scales an index by a
-// shift, not by a 64-bit multiplication. Angles in radians, colours linear Rec.709, lengths in
-// scene units (metres in glTF).
+// 16 bytes, the same bytes for every backend. Structs that kernels gather from are a power of two
+// long: a vector unit scales an index by a shift, not by a 64-bit multiplication. Angles in
+// radians, colours linear Rec.709, lengths in scene units (metres in glTF).
 #pragma once
 
 // X(struct, bytes): checked by every compiler that sees it.

@@ -26,6 +26,7 @@
 
 #define uses(scene, effect) (((scene)->effects & (effect)) != 0)
 
+#include "common/as_cpp/vector_types.h"
 #include "common/as_cpp/vectors.h"
 
 SHARED int as_int(float x) { return __builtin_bit_cast(int, x); }
@@ -37,6 +38,6 @@ SHARED float math_sqrt(float x) { return __builtin_sqrtf(x); }
 SHARED float math_abs(float x) { return __builtin_fabsf(x); }
 SHARED float math_floor(float x) { return __builtin_floorf(x); }
 
-#include "common/elementary.h"
+#include "common/as_float/elementary.h"
 
 #include "common/math.h"

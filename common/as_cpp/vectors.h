@@ -1,22 +1,9 @@
-// Vector types with the names and the arithmetic of OpenCL C. Included by both C++ dialects (twice
-// by as_double, where `float` is widened the second time), hence without a guard.
-
-typedef unsigned int uint;
-
-struct alignas(2 * sizeof(float)) float2 {
-    float x, y;
-};
-struct float3 {
-    float x, y, z;
-};
-struct alignas(4 * sizeof(float)) float4 {
-    float x, y, z, w;
-};
+// The arithmetic of OpenCL C on the types of vector_types.h.
 
 SHARED float2 make_float2(float x, float y) { return float2{x, y}; }
 SHARED float3 make_float3(float x, float y, float z) { return float3{x, y, z}; }
 SHARED float4 make_float4(float x, float y, float z, float w) { return float4{x, y, z, w}; }
-SHARED float3 xyz(const float4& v) { return float3{v.x, v.y, v.z}; }
+SHARED float3 xyz(float4 v) { return float3{v.x, v.y, v.z}; }
 
 SHARED float2 operator+(float2 a, float2 b) { return {a.x + b.x, a.y + b.y}; }
 SHARED float2 operator-(float2 a, float2 b) { return {a.x - b.x, a.y - b.y}; }

@@ -30,7 +30,7 @@
 // What memory holds stays single precision (namespace stored); reading it widens, exactly.
 #define STORED(type) STORED_##type
 namespace stored {
-#include "common/as_cpp/vectors.h"
+#include "common/as_cpp/vector_types.h"
 #include "common/layout.h"
 }  // namespace stored
 #define STORED_int int
@@ -44,6 +44,7 @@ using STORED_float4 = stored::float4;
 STORED_STRUCTS(STORED_NAME)
 
 #define float double
+#include "common/as_cpp/vector_types.h"
 #include "common/as_cpp/vectors.h"
 
 SHARED float3 xyz(stored::float4 v) { return float3{v.x, v.y, v.z}; }

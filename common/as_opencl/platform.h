@@ -33,6 +33,6 @@ SHARED float math_sqrt(float x) { return sqrt(x); }
 SHARED float math_abs(float x) { return fabs(x); }
 SHARED float math_floor(float x) { return floor(x); }
 
-#include "common/elementary.h"
+#include "common/as_float/elementary.h"
 
 #include "common/math.h"

@@ -9,7 +9,8 @@
 //   body: shared - common/stages/NAME.h, the same source on every backend;
 //         native - written for each kind of device
 //   when: once - at the start; each_bounce - until no path is alive; first_bounce - in the first of
-//         these only, at its place in the order; at_end - over result entries, not paths
+//         these only, at its place in the order; at_end -
+//         over result entries, not paths, once for each of Paths::samples with Paths::turn counting up
 //   needs: effects of which the scene must call for one, else the stage is neither compiled nor
 //         launched; 0: always
 #define STAGES(X)                                                      \

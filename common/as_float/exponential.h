@@ -1,7 +1,7 @@
 // Exponentials and logarithms.
 #pragma once
 
-#include "common/elementary/bits.h"
+#include "common/as_float/bits.h"
 
 // Within 4 ulp.
 SHARED float math_exp(float x)

@@ -1,7 +1,7 @@
 // Arc sine, arc cosine and the angle of a vector.
 #pragma once
 
-#include "common/elementary/bits.h"
+#include "common/as_float/bits.h"
 
 // asin of x in [0, 0.5], given x and z = x^2 rounded or better.
 SHARED float arc_sine_small(float x, float z)

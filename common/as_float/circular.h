@@ -1,7 +1,7 @@
 // Sine, cosine and tangent; sine and cosine of multiples of pi.
 #pragma once
 
-#include "common/elementary/bits.h"
+#include "common/as_float/bits.h"
 
 // An angle as the nearest multiple of a right angle, modulo 4, and the rest in [-pi/4, pi/4].
 typedef struct {

@@ -9,9 +9,9 @@
 // The double dialect has the C library's functions under the same names instead.
 #pragma once
 
-#include "common/elementary/bits.h"
+#include "common/as_float/bits.h"
 
-#include "common/elementary/circular.h"
-#include "common/elementary/exponential.h"
-#include "common/elementary/inverse_circular.h"
-#include "common/elementary/power.h"
+#include "common/as_float/circular.h"
+#include "common/as_float/exponential.h"
+#include "common/as_float/inverse_circular.h"
+#include "common/as_float/power.h"

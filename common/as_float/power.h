@@ -1,8 +1,8 @@
 // Powers and the cube root.
 #pragma once
 
-#include "common/elementary/bits.h"
-#include "common/elementary/exponential.h"
+#include "common/as_float/bits.h"
+#include "common/as_float/exponential.h"
 
 // A number as the exact sum of a 12-bit leading part and a small rest.
 typedef struct {

@@ -1,0 +1,19 @@
+#include "backends/backend.hpp"
+#include "backends/cpu_backend.hpp"
+
+#include <stdexcept>
+
+namespace diptych {
+
+std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options)
+{
+    if (name == "cpu") return make_cpu_backend(kernels_vector::set, options);
+    if (name == "twin")
+        return make_cpu_backend(options.debug_kernels ? kernels_debug::set : kernels_scalar::set,
+                                options);
+    if (name == "double") return make_cpu_backend(kernels_reference::set, options);
+    throw std::runtime_error("--backend " + name +
+                             ": no such backend; use cpu, opencl, twin or double");
+}
+
+}  // namespace diptych

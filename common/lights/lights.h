@@ -1,0 +1,66 @@
+// One light is chosen with a probability proportional to its power, and one point on it.
+#pragma once
+
+#include "common/lights/environment.h"
+#include "common/lights/punctual_light.h"
+#include "common/lights/triangle_light.h"
+
+// Vose's alias method; u in [0, 1)^2.
+SHARED int light_choose(const Scene* scene, float2 u)
+{
+    const int count = scene->settings[0].light_count;
+    const int scaled = (int)(u.x * (float)count);
+    const int drawn = scaled >= count ? count - 1 : scaled;
+    const int alias = scene->light_choice[drawn].alias;
+    const float threshold = scene->light_choice[drawn].threshold;
+    const int mask = u.y < threshold ? 0 : -1;  // bits, not a select, which would select addresses
+    return drawn ^ ((drawn ^ alias) & mask);
+}
+
+SHARED LightSample light_sample_select(int is_second, LightSample a, LightSample b)
+{
+    LightSample sample;
+    sample.direction = make_float3(is_second ? b.direction.x : a.direction.x,
+                                   is_second ? b.direction.y : a.direction.y,
+                                   is_second ? b.direction.z : a.direction.z);
+    sample.distance = is_second ? b.distance : a.distance;
+    sample.radiance = make_float3(is_second ? b.radiance.x : a.radiance.x,
+                                  is_second ? b.radiance.y : a.radiance.y,
+                                  is_second ? b.radiance.z : a.radiance.z);
+    sample.pdf = is_second ? b.pdf : a.pdf;
+    sample.is_punctual = is_second ? b.is_punctual : a.is_punctual;
+    return sample;
+}
+
+// A sample of the light `light` seen from `from`; the kinds that the scene has none of cost
+// nothing.
+SHARED LightSample light_sample(const Scene* scene, int light, float3 from, float2 u, float2 within)
+{
+    const int kind = scene->lights[light].kind;
+    LightSample sample;
+    sample.direction = make_float3(0.0f, 0.0f, 1.0f);
+    sample.distance = FLOAT_MAX;
+    sample.radiance = make_float3(0.0f, 0.0f, 0.0f);
+    sample.pdf = 0.0f;
+    sample.is_punctual = 0;
+    if (uses(scene, EFFECT_EMISSION))
+        sample = light_sample_select(kind == LIGHT_TRIANGLE, sample,
+                                     triangle_light_sample(scene, light, from, u));
+    if (uses(scene, EFFECT_PUNCTUAL_LIGHTS)) {
+        const int is_punctual = (kind >= LIGHT_POINT) & (kind <= LIGHT_DIRECTIONAL);
+        sample =
+            light_sample_select(is_punctual, sample, punctual_light_sample(scene, light, from));
+    }
+    if (uses(scene, EFFECT_ENVIRONMENT))
+        sample = light_sample_select(kind == LIGHT_ENVIRONMENT, sample,
+                                     environment_light_sample(scene, u, within));
+    return sample;
+}
+
+// Power heuristic (Veach and Guibas 1995, exponent 2) for the technique with density a.
+SHARED float mis_weight(float a, float b)
+{
+    const float ratio = b / a;
+    const float weight = 1.0f / (1.0f + ratio * ratio);
+    return a > 0.0f ? weight : 0.0f;
+}

@@ -1,0 +1,34 @@
+// Starts every path of a dispatch at the camera: which pixel, which sample, which ray.
+#pragma once
+
+#include "common/camera.h"
+#include "common/filter.h"
+#include "common/random.h"
+
+SHARED void generate_paths(const Scene* scene, const Paths* paths, int i)
+{
+    const int in_item = i & ((1 << paths->pixel_shift) - 1);
+    const int sample_of_all = i >> paths->pixel_shift;
+    const int item = (int)((float)sample_of_all * (1.0f / (float)paths->samples));
+    const int in_quantum = sample_of_all & (paths->samples - 1);
+
+    const int x = paths->items[item].x + compact_bits((uint)in_item);
+    const int y = paths->items[item].y + compact_bits((uint)in_item >> 1);
+    const int sample = paths->items[item].first_sample + in_quantum;
+    const int pixel = x | y << 16;
+    const int is_inside = (x < scene->settings[0].width) & (y < scene->settings[0].height);
+
+    const SampleKey key = sample_key(scene->settings[0].seed, pixel, sample);
+    const float2 offset =
+        filter_sample(scene->settings[0].filter, sample_pair(key, PAIR_PIXEL_FILTER));
+    const Ray ray = camera_ray(scene, (float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y);
+
+    set_pixel(paths, i, pixel);
+    set_sample(paths, i, sample);
+    set_depth(paths, i, is_inside ? 0 : -1);
+    set_ray_origin(paths, i, ray.origin);
+    set_ray_direction(paths, i, ray.direction);
+    set_scatter_pdf(paths, i, 0.0f);
+    set_throughput(paths, i, make_float3(1.0f, 1.0f, 1.0f));
+    set_radiance(paths, i, make_float3(0.0f, 0.0f, 0.0f));
+}

@@ -1,0 +1,49 @@
+// Runs the whole row list for a few hundred paths at a time, so that their state stays in the
+// second-level cache.
+#pragma once
+
+#include "kernels_cpu/embree_scene.hpp"
+#include "kernels_cpu/kernels.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace diptych {
+
+inline constexpr int chunk_paths = 512;
+
+// Path state for one thread, and what its work has cost so far.
+class Chunk {
+public:
+    Chunk(const KernelSet& kernels, const EmbreeScene* embree, const SceneView& scene);
+
+    // All samples of one work item: `item` is a WorkItem, results are written at `first_result` of
+    // the planes in `results`. results.samples is the number of samples in the item.
+    void run(const PathView& results, int first_result, const void* item);
+
+    std::array<double, STAGE_COUNT> stage_seconds{};
+    std::uint64_t rays = 0;
+    std::uint64_t shadow_rays = 0;
+    std::uint64_t paths = 0;
+
+private:
+    void run_stage(Stage stage, int count);
+    void trace_paths(int count);
+    int compact(int count);
+    void retire(int count);
+
+    const KernelSet& kernels_;
+    const EmbreeScene* embree_;
+    SceneView scene_;
+    std::vector<unsigned char> memory_;
+    std::vector<void*> planes_;
+    std::vector<void*> retired_planes_;  // planes_, but radiance lies in the order of the slots
+    std::vector<int> slots_;
+    std::vector<int> live_;
+    PathView view_;
+    int bounce_ = 0;
+};
+
+}  // namespace diptych

@@ -1,0 +1,314 @@
+#include "kernels_cpu/embree_scene.hpp"
+
+#include "platform.h"
+
+#include "common/alpha.h"
+#include "common/buffers.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <atomic>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace diptych {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr int width = 16;
+using RayHits = RTCRayHit16;
+using Rays = RTCRay16;
+#else
+constexpr int width = 8;
+using RayHits = RTCRayHit8;
+using Rays = RTCRay8;
+#endif
+
+constexpr float far_away = std::numeric_limits<float>::infinity();
+
+[[noreturn]] void fail(RTCDevice device, const std::string& what)
+{
+    throw std::runtime_error("Embree: " + what + " (error " +
+                             std::to_string(int(rtcGetDeviceError(device))) +
+                             "); try less --memory or a smaller scene");
+}
+
+// The views that the packets read and write, with their types.
+struct Views {
+    Scene scene;
+    Paths paths;
+};
+
+Views typed(const SceneView& scene_view, const PathView& path_view)
+{
+    Views views{};
+    views.scene.effects = scene_view.effects;
+    int row = 0;
+#define BIND_SCENE(type, name) \
+    views.scene.name = static_cast<const type*>(scene_view.buffers[row++]);
+    SCENE_BUFFERS(BIND_SCENE)
+    row = 0;
+    views.paths.capacity = path_view.capacity;
+#define BIND_PATH(type, name, life) \
+    views.paths.name = static_cast<decltype(views.paths.name)>(path_view.planes[row++]);
+    PATH_BUFFERS(BIND_PATH)
+    return views;
+}
+
+// What filters need of the rays of a packet.
+struct PacketContext {
+    RTCIntersectContext embree;  // first: Embree hands its address back
+    const Views* views;
+    const int* first_triangle;  // by instance
+    int path[width];
+    int purpose;
+};
+
+int instance_of(unsigned embree_instance)
+{
+    return embree_instance == RTC_INVALID_GEOMETRY_ID ? 0 : int(embree_instance);
+}
+
+// Alpha: does this hit stop the ray?
+void filter_alpha(const RTCFilterFunctionNArguments* arguments)
+{
+    const auto* context = reinterpret_cast<const PacketContext*>(arguments->context);
+    const unsigned n = arguments->N;
+    for (unsigned k = 0; k < n; ++k) {
+        if (arguments->valid[k] != -1) continue;
+        const int instance = instance_of(RTCHitN_instID(arguments->hit, n, k, 0));
+        const int triangle =
+            context->first_triangle[instance] + int(RTCHitN_primID(arguments->hit, n, k));
+        const int i = context->path[RTCRayN_id(arguments->ray, n, k)];
+        const Scene* scene = &context->views->scene;
+        const Paths* paths = &context->views->paths;
+        const uint seed = alpha_seed(scene->settings[0].seed, get_pixel(paths, i),
+                                     get_sample(paths, i), get_depth(paths, i), context->purpose);
+        const float u = RTCHitN_u(arguments->hit, n, k);
+        const float v = RTCHitN_v(arguments->hit, n, k);
+        if (!alpha_accepts(scene, instance, triangle, u, v, seed)) arguments->valid[k] = 0;
+    }
+}
+
+}  // namespace
+
+struct EmbreeScene::Implementation {
+    RTCDevice device = nullptr;
+    RTCScene top = nullptr;
+    std::vector<RTCScene> meshes;
+    std::vector<int> first_triangle;
+    std::atomic<long> bytes{0};
+
+    ~Implementation()
+    {
+        for (RTCScene mesh : meshes) rtcReleaseScene(mesh);
+        if (top) rtcReleaseScene(top);
+        if (device) rtcReleaseDevice(device);
+    }
+
+    RTCGeometry triangles_of(const EmbreeMesh& mesh, bool has_alpha) const
+    {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh.positions, 0, 16, mesh.vertex_count);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   mesh.triangles, 0, 16, size_t(mesh.triangle_count));
+        if (has_alpha) {
+            rtcSetGeometryIntersectFilterFunction(geometry, filter_alpha);
+            rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
+        }
+        rtcCommitGeometry(geometry);
+        return geometry;
+    }
+
+    void attach(RTCScene scene, RTCGeometry geometry, unsigned id) const
+    {
+        rtcAttachGeometryByID(scene, geometry, id);
+        rtcReleaseGeometry(geometry);
+    }
+
+    RTCScene new_scene() const
+    {
+        RTCScene scene = rtcNewScene(device);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        return scene;
+    }
+
+    // Instances of one mesh share its scene: `same_as` is that of an earlier instance of it, or
+    // nullptr.
+    RTCScene mesh_scene(const EmbreeMesh& mesh, bool has_alpha)
+    {
+        RTCScene scene = new_scene();
+        attach(scene, triangles_of(mesh, has_alpha), 0);
+        rtcCommitScene(scene);
+        meshes.push_back(scene);
+        return scene;
+    }
+};
+
+namespace {
+
+bool count_bytes(void* pointer, ssize_t bytes, bool)
+{
+    *static_cast<std::atomic<long>*>(pointer) += long(bytes);
+    return true;
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(const EmbreeMesh* meshes, int count, int threads, bool has_alpha)
+    : implementation_(std::make_unique<Implementation>())
+{
+    Implementation& self = *implementation_;
+    const std::string config = "threads=" + std::to_string(threads);
+    self.device = rtcNewDevice(config.c_str());
+    if (!self.device)
+        throw std::runtime_error("Embree: cannot start; is the processor x86-64 or ARM64?");
+    rtcSetDeviceMemoryMonitorFunction(self.device, count_bytes, &self.bytes);
+    self.top = self.new_scene();
+    std::vector<std::pair<int, RTCScene>> placed;  // first triangle of a mesh, its scene
+    for (int k = 0; k < count; ++k) {
+        const EmbreeMesh& mesh = meshes[k];
+        self.first_triangle.push_back(mesh.first_triangle);
+        if (mesh.triangle_count == 0) continue;
+        if (!mesh.to_world) {
+            self.attach(self.top, self.triangles_of(mesh, has_alpha), unsigned(k));
+            continue;
+        }
+        if (placed.empty() || placed.back().first != mesh.first_triangle)
+            placed.emplace_back(mesh.first_triangle, self.mesh_scene(mesh, has_alpha));
+        RTCGeometry instance = rtcNewGeometry(self.device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(instance, placed.back().second);
+        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, mesh.to_world);
+        rtcCommitGeometry(instance);
+        self.attach(self.top, instance, unsigned(k));
+    }
+    rtcCommitScene(self.top);
+    if (rtcGetDeviceError(self.device) != RTC_ERROR_NONE)
+        fail(self.device, "cannot build the scene's structure");
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+size_t EmbreeScene::bytes() const { return size_t(implementation_->bytes.load()); }
+
+std::string EmbreeScene::version()
+{
+    return "Embree " + std::to_string(RTC_VERSION_MAJOR) + "." + std::to_string(RTC_VERSION_MINOR) +
+           "." + std::to_string(RTC_VERSION_PATCH);
+}
+
+int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_view, int count,
+                           bool is_coherent) const
+{
+    const Views views = typed(scene_view, path_view);
+    const Paths& paths = views.paths;
+    PacketContext context;
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags =
+        is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.views = &views;
+    context.first_triangle = implementation_->first_triangle.data();
+    context.purpose = 0;
+    const int n = paths.capacity;
+    int rays = 0;
+    for (int first = 0; first < count; first += width) {
+        alignas(64) int valid[width];
+        alignas(64) RayHits packet;
+        for (int k = 0; k < width; ++k) {
+            const int i = first + k;
+            const bool is_alive = i < count && paths.depth[i] >= 0;
+            valid[k] = is_alive ? -1 : 0;
+            rays += is_alive ? 1 : 0;
+            context.path[k] = i;
+            packet.ray.org_x[k] = paths.ray_origin[i];
+            packet.ray.org_y[k] = paths.ray_origin[n + i];
+            packet.ray.org_z[k] = paths.ray_origin[2 * n + i];
+            packet.ray.dir_x[k] = paths.ray_direction[i];
+            packet.ray.dir_y[k] = paths.ray_direction[n + i];
+            packet.ray.dir_z[k] = paths.ray_direction[2 * n + i];
+            packet.ray.tnear[k] = 0.0f;
+            packet.ray.tfar[k] = far_away;
+            packet.ray.time[k] = 0.0f;
+            packet.ray.mask[k] = ~0u;
+            packet.ray.id[k] = unsigned(k);
+            packet.ray.flags[k] = 0;
+            packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+            packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+        }
+#if defined(__AVX512F__)
+        rtcIntersect16(valid, implementation_->top, &context.embree, &packet);
+#else
+        rtcIntersect8(valid, implementation_->top, &context.embree, &packet);
+#endif
+        for (int k = 0; k < width; ++k) {
+            const int i = first + k;
+            const bool is_hit = valid[k] != 0 && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+            const int instance = is_hit ? instance_of(packet.hit.instID[0][k]) : 0;
+            paths.hit_instance[i] = instance;
+            paths.hit_triangle[i] =
+                is_hit ? context.first_triangle[instance] + int(packet.hit.primID[k]) : -1;
+        }
+    }
+    return rays;
+}
+
+int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_view, int count) const
+{
+    const Views views = typed(scene_view, path_view);
+    const Paths& paths = views.paths;
+    PacketContext context;
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.views = &views;
+    context.first_triangle = implementation_->first_triangle.data();
+    context.purpose = 1;
+    const int n = paths.capacity;
+    int rays = 0;
+    int i = 0;
+    while (i < count) {
+        alignas(64) int valid[width] = {};
+        alignas(64) Rays packet;
+        int lanes = 0;
+        for (; i < count && lanes < width; ++i) {
+            const bool is_lit = paths.light_contribution[i] > 0.0f ||
+                                paths.light_contribution[n + i] > 0.0f ||
+                                paths.light_contribution[2 * n + i] > 0.0f;
+            if (!is_lit) continue;
+            valid[lanes] = -1;
+            context.path[lanes] = i;
+            packet.org_x[lanes] = paths.shadow_origin[i];
+            packet.org_y[lanes] = paths.shadow_origin[n + i];
+            packet.org_z[lanes] = paths.shadow_origin[2 * n + i];
+            packet.dir_x[lanes] = paths.shadow_direction[i];
+            packet.dir_y[lanes] = paths.shadow_direction[n + i];
+            packet.dir_z[lanes] = paths.shadow_direction[2 * n + i];
+            packet.tnear[lanes] = 0.0f;
+            packet.tfar[lanes] = paths.shadow_distance[i];
+            packet.time[lanes] = 0.0f;
+            packet.mask[lanes] = ~0u;
+            packet.id[lanes] = unsigned(lanes);
+            packet.flags[lanes] = 0;
+            ++lanes;
+        }
+        if (lanes == 0) break;
+#if defined(__AVX512F__)
+        rtcOccluded16(valid, implementation_->top, &context.embree, &packet);
+#else
+        rtcOccluded8(valid, implementation_->top, &context.embree, &packet);
+#endif
+        for (int k = 0; k < lanes; ++k)
+            paths.is_occluded[context.path[k]] = packet.tfar[k] < 0.0f ? 1 : 0;
+        rays += lanes;
+    }
+    return rays;
+}
+
+}  // namespace diptych

@@ -1,0 +1,44 @@
+// The scene in Embree's hands, and the native stages of the `cpu` backend: rays in packets of 8 or
+// 16 over the live paths.
+#pragma once
+
+#include "kernels_cpu/kernels.hpp"
+
+#include <memory>
+#include <string>
+
+namespace diptych {
+
+// One mesh placed in the world, as Embree needs it. Memory is shared, not copied: it must outlive
+// the EmbreeScene and be readable 16 bytes beyond the last vertex.
+struct EmbreeMesh {
+    const float* positions;  // x, y, z, unused; all vertices of the scene
+    size_t vertex_count;
+    const int* triangles;  // vertex indices and material, four ints a triangle: this mesh's first
+    int triangle_count;
+    int first_triangle;     // in the scene
+    const float* to_world;  // 3 rows of 4, or nullptr for the mesh that lies in world space already
+};
+
+class EmbreeScene {
+public:
+    EmbreeScene(const EmbreeMesh* meshes, int count, int threads, bool has_alpha);
+    ~EmbreeScene();
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    // Closest hits of paths 0 .. count - 1 into hit_triangle and hit_instance; -1 for dead paths
+    // and misses. Returns the number of rays.
+    int intersect(const SceneView&, const PathView&, int count, bool is_coherent) const;
+    // Shadow rays of the paths whose light contribution is not black. Returns their number.
+    int occlusion(const SceneView&, const PathView&, int count) const;
+
+    size_t bytes() const;  // what Embree allocated
+    static std::string version();
+
+private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace diptych

@@ -1,0 +1,52 @@
+// The kernels as the CPU backends call them: loops over a range of paths, one per stage, from the
+// same sources as OpenCL's.
+#pragma once
+
+#include "common/stages/stages.h"
+
+namespace diptych {
+
+// The views of common/buffers.h without their element types, which differ between dialects: buffers
+// in the order of the rows. Float planes hold float or double, as the kernel set's real_bytes says.
+struct SceneView {
+    unsigned effects = 0;
+    const void* const* buffers = nullptr;
+};
+struct PathView {
+    int capacity = 0;
+    int results = 0;
+    int samples = 0;
+    int pixel_shift = 0;
+    int turn = 0;
+    const void* items = nullptr;  // WorkItem
+    void* const* planes = nullptr;
+    void* const* result_planes = nullptr;
+};
+
+// Runs a stage for paths (or results) first .. first + count - 1.
+using StageLoop = void (*)(const SceneView&, const PathView&, int first, int count);
+
+struct KernelSet {
+    const char* name;
+    int real_bytes;
+    // The loop for a stage; nullptr for native stages that the set does not have. Loops specialised
+    // for some effects are chosen by `effects`; which buffers such a loop may read beyond those of
+    // `effects` says covered_effects.
+    StageLoop (*loop)(Stage stage, unsigned effects);
+    unsigned (*covered_effects)(unsigned effects);
+};
+
+namespace kernels_vector {  // vectorised across paths; no intersection (Embree does it)
+extern const KernelSet set;
+}
+namespace kernels_scalar {  // the same sources, scalar, with the BVH walk: what OpenCL runs
+extern const KernelSet set;
+}
+namespace kernels_debug {  // kernels_scalar for a debugger: -O0 -g, nothing inlined
+extern const KernelSet set;
+}
+namespace kernels_reference {  // in double precision
+extern const KernelSet set;
+}
+
+}  // namespace diptych

@@ -1,0 +1,89 @@
+#include "kernels_cpu/stage_tracer.hpp"
+
+#include "kernels_cpu/path_rows.hpp"
+
+#include <algorithm>
+
+namespace diptych {
+namespace {
+
+template<class Value>
+std::vector<double> widen(const void* plane, size_t count)
+{
+    const Value* values = static_cast<const Value*>(plane);
+    return std::vector<double>(values, values + count);
+}
+
+}  // namespace
+
+StageTracer::StageTracer(const KernelSet& kernels, const EmbreeScene* embree,
+                         const SceneView& scene, const PathView& results, int paths)
+    : kernels_(kernels), embree_(embree), scene_(scene), view_(results), paths_(paths)
+{
+    const size_t padded = size_t(paths) + 16;  // packets write whole
+    for (const PathRow& row : path_rows) {
+        const size_t element = row.is_real ? size_t(kernels.real_bytes) : 4;
+        memory_.emplace_back(padded * element * size_t(row.components) + 64);
+        planes_.push_back(memory_.back().data());
+    }
+    view_.capacity = int(padded);
+    view_.planes = planes_.data();
+}
+
+void StageTracer::run(const std::function<void(Stage, int, Planes)>& after_stage)
+{
+    const auto run_row = [&](Stage stage, int bounce) {
+        run_stage(stage, bounce);
+        after_stage(stage, bounce, planes());
+    };
+    run_row(STAGE_generate_paths, 0);
+    for (int bounce = 0; is_any_alive(); ++bounce) {
+#define RUN_each_bounce(name) run_row(STAGE_##name, bounce);
+#define RUN_first_bounce(name) \
+    if (bounce == 0) run_row(STAGE_##name, bounce);
+#define RUN_once(name)
+#define RUN_at_end(name)
+#define RUN(name, body, when, needs)                                                          \
+    if (STAGE_##name != STAGE_compact && ((needs) == 0 || (scene_.effects & (needs)) != 0)) { \
+        RUN_##when(name)                                                                      \
+    }
+        STAGES(RUN)
+    }
+}
+
+void StageTracer::run_stage(Stage stage, int bounce)
+{
+    if (const StageLoop loop = kernels_.loop(stage, scene_.effects))
+        loop(scene_, view_, 0, paths_);
+    else if (stage == STAGE_intersect)
+        embree_->intersect(scene_, view_, paths_, bounce == 0);
+    else if (stage == STAGE_occlusion)
+        embree_->occlusion(scene_, view_, paths_);
+}
+
+StageTracer::Planes StageTracer::planes() const
+{
+    Planes all;
+    for (int r = 0; r < path_row_count; ++r) {
+        std::vector<double> values;
+        for (int c = 0; c < path_rows[r].components; ++c) {
+            const size_t first = size_t(c) * size_t(view_.capacity);
+            const auto* plane = static_cast<const unsigned char*>(planes_[size_t(r)]);
+            std::vector<double> component =
+                !path_rows[r].is_real      ? widen<int>(plane + first * 4, size_t(paths_))
+                : kernels_.real_bytes == 8 ? widen<double>(plane + first * 8, size_t(paths_))
+                                           : widen<float>(plane + first * 4, size_t(paths_));
+            values.insert(values.end(), component.begin(), component.end());
+        }
+        all.push_back(std::move(values));
+    }
+    return all;
+}
+
+bool StageTracer::is_any_alive() const
+{
+    const int* depth = static_cast<const int*>(planes_[row_depth]);
+    return std::any_of(depth, depth + paths_, [](int d) { return d >= 0; });
+}
+
+}  // namespace diptych

@@ -1,0 +1,140 @@
+// Entry points of the shared stages, expanded from the rows. Compiled once per kernel set:
+// KERNEL_SET is its namespace, VECTORISED says whether loops run over paths in vector lanes, and
+// the include path picks the dialect.
+#include "kernels_cpu/kernels.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+// Each set has the shared sources in a namespace of its own, so that their types never meet.
+namespace diptych::KERNEL_SET {
+#include "platform.h"
+
+#include "common/stages/bodies.h"
+#if !VECTORISED
+#include "kernels_cpu/walk.hpp"
+#endif
+
+namespace {
+
+Scene scene_from(const SceneView& view)
+{
+    Scene scene;
+    int row = 0;
+    scene.effects = view.effects;
+#define BIND_SCENE(type, name) scene.name = static_cast<decltype(scene.name)>(view.buffers[row++]);
+    SCENE_BUFFERS(BIND_SCENE)
+    return scene;
+}
+
+Paths paths_from(const PathView& view)
+{
+    Paths paths;
+    paths.capacity = view.capacity;
+    paths.results = view.results;
+    paths.samples = view.samples;
+    paths.pixel_shift = view.pixel_shift;
+    paths.turn = view.turn;
+    paths.items = static_cast<decltype(paths.items)>(view.items);
+    int row = 0;
+#define BIND_PATH(type, name, life) \
+    paths.name = static_cast<decltype(paths.name)>(view.planes[row++]);
+    PATH_BUFFERS(BIND_PATH)
+    row = 0;
+#define BIND_RESULT(type, name) \
+    paths.name = static_cast<decltype(paths.name)>(view.result_planes[row++]);
+    RESULT_BUFFERS(BIND_RESULT)
+    return paths;
+}
+
+// Effects that vectorised loops are compiled for, from few to many; the first that covers a scene
+// serves it. A condition that is the same for all paths would keep a loop from being vectorised, so
+// it must be a constant.
+constexpr unsigned variants[] = {
+    EFFECT_EMISSION,
+    EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR,
+    EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
+        EFFECT_BASE_TEXTURE,
+    EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
+        EFFECT_BASE_TEXTURE | EFFECT_SURFACE_TEXTURES | EFFECT_NORMAL_MAP,
+    ~0u,
+};
+constexpr int variant_count = int(sizeof(variants) / sizeof(variants[0]));
+
+#if VECTORISED
+#define OVER_PATHS _Pragma("omp simd")
+#define EFFECTS_OF(variant, view) variants[variant]
+int variant_for(unsigned effects)
+{
+    int k = 0;
+    while ((effects & ~variants[k]) != 0) ++k;
+    return k;
+}
+unsigned covered_effects(unsigned effects) { return variants[variant_for(effects)]; }
+#else
+#define OVER_PATHS
+#define EFFECTS_OF(variant, view) (view).effects
+int variant_for(unsigned) { return variant_count - 1; }
+unsigned covered_effects(unsigned effects) { return effects; }
+#endif
+
+#define ENTRY_shared(name)                                                                     \
+    template<int variant>                                                                      \
+    [[gnu::noinline]] void name##_loop(const SceneView& scene_view, const PathView& path_view, \
+                                       int first, int count)                                   \
+    {                                                                                          \
+        Scene scene = scene_from(scene_view);                                                  \
+        scene.effects = EFFECTS_OF(variant, scene_view);                                       \
+        const Paths paths = paths_from(path_view);                                             \
+        const auto settings = *scene.settings; /* local: no store to a plane can change it */  \
+        scene.settings = &settings;                                                            \
+        OVER_PATHS                                                                             \
+        for (int i = first; i < first + count; ++i) name(&scene, &paths, i);                   \
+    }
+#define ENTRY_native(name)
+#define ENTRY(name, body, when, needs) ENTRY_##body(name)
+STAGES(ENTRY)
+
+#if !VECTORISED
+#define ENTRY_walk(name)                                                                           \
+    void name##_loop(const SceneView& scene_view, const PathView& path_view, int first, int count) \
+    {                                                                                              \
+        const Scene scene = scene_from(scene_view);                                                \
+        const Paths paths = paths_from(path_view);                                                 \
+        for (int i = first; i < first + count; ++i) name(&scene, &paths, i);                       \
+    }
+ENTRY_walk(intersect) ENTRY_walk(occlusion)
+#endif
+
+    StageLoop loop_of(Stage stage, unsigned effects)
+{
+    const int variant = variant_for(effects);
+#if VECTORISED
+#define LOOPS_OF(name)                                                                           \
+    static constexpr StageLoop name##_loops[] = {name##_loop<0>, name##_loop<1>, name##_loop<2>, \
+                                                 name##_loop<3>, name##_loop<4>};                \
+    if (stage == STAGE_##name) return name##_loops[variant];
+#else
+#define LOOPS_OF(name) \
+    if (stage == STAGE_##name) return name##_loop<variant_count - 1>;
+#endif
+#define LOOP_shared(name) LOOPS_OF(name)
+#define LOOP_native(name)
+#define LOOP(name, body, when, needs) LOOP_##body(name)
+    STAGES(LOOP)
+#if !VECTORISED
+    if (stage == STAGE_intersect) return intersect_loop;
+    if (stage == STAGE_occlusion) return occlusion_loop;
+#endif
+    (void)variant;
+    return nullptr;
+}
+
+}  // namespace
+
+extern const KernelSet set;
+const KernelSet set{KERNEL_NAME, int(sizeof(PLANE(float))), loop_of, covered_effects};
+
+}  // namespace diptych::KERNEL_SET
