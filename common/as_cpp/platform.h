@@ -39,5 +39,4 @@ SHARED float math_abs(float x) { return __builtin_fabsf(x); }
 SHARED float math_floor(float x) { return __builtin_floorf(x); }
 
 #include "common/as_float/elementary.h"
-
 #include "common/math.h"

@@ -3,7 +3,7 @@
 
 #include "common/as_float/bits.h"
 
-// Within 4 ulp.
+// Within 1 ulp.
 SHARED float math_exp(float x)
 {
     // Beyond these bounds the result has overflowed or vanished; a NaN becomes the lower one.
@@ -28,7 +28,7 @@ SHARED float exp2_fraction(float r)
                                                      r * (0.00133990031f + r * 0.000153532441f)))));
 }
 
-// Within 4 ulp; exact for integers.
+// Within 1.25 ulp, exact for integers.
 SHARED float math_exp2(float x)
 {
     const float low = x > -151.0f ? x : -151.0f;
@@ -60,7 +60,7 @@ SHARED float log_special(float x, float value)
     return x > 0.0f ? positive : other;
 }
 
-// Within 4 ulp; -infinity at 0, NaN below.
+// Within 1 ulp; -infinity at 0, NaN below.
 SHARED float math_log(float x)
 {
     const FloatParts parts = float_parts(x);
@@ -69,7 +69,7 @@ SHARED float math_log(float x)
     return log_special(x, e * 0.693359375f + (f - (log_tail(f) - e * -0.000212194442f)));
 }
 
-// Within 4 ulp, exact for powers of two; -infinity at 0, NaN below.
+// Within 1.75 ulp, exact for powers of two; -infinity at 0, NaN below.
 SHARED float math_log2(float x)
 {
     const FloatParts parts = float_parts(x);

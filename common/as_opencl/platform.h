@@ -34,5 +34,4 @@ SHARED float math_abs(float x) { return fabs(x); }
 SHARED float math_floor(float x) { return floor(x); }
 
 #include "common/as_float/elementary.h"
-
 #include "common/math.h"
