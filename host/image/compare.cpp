@@ -18,10 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-[[noreturn]] void fail(const std::string& what)
-{
-    throw std::runtime_error(what);
-}
+[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
 
 std::string known_metrics()
 {
@@ -43,8 +40,8 @@ std::string metric_name(const std::string& given)
 std::vector<Measurement> requested(const CompareOptions& options)
 {
     if (!options.limits.empty() && options.limits.size() != options.metrics.size())
-        fail(fmt::format("{} --metric and {} --max given; give one --max for each --metric", options.metrics.size(),
-                         options.limits.size()));
+        fail(fmt::format("{} --metric and {} --max given; give one --max for each --metric",
+                         options.metrics.size(), options.limits.size()));
     std::vector<Measurement> wanted;
     for (size_t k = 0; k < options.metrics.size(); ++k) {
         wanted.push_back({metric_name(options.metrics[k]), 0, !options.limits.empty(), 0, true});
@@ -64,13 +61,15 @@ struct Pair {
 
 Pair read_pair(const CompareOptions& options)
 {
-    if (options.reference.empty() || options.test.empty()) fail("two pictures are needed: compare REFERENCE TEST");
+    if (options.reference.empty() || options.test.empty())
+        fail("two pictures are needed: compare REFERENCE TEST");
     Pair pair{colors_of(read_picture(options.reference), options.layer, options.reference),
               colors_of(read_picture(options.test), options.layer, options.test)};
     const Colors &a = pair.reference, &b = pair.test;
     if (a.width != b.width || a.height != b.height)
-        fail(fmt::format("{}: {} x {} pixels, but {} has {} x {}; only pictures of one size can be compared",
-                         options.reference, a.width, a.height, options.test, b.width, b.height));
+        fail(fmt::format(
+            "{}: {} x {} pixels, but {} has {} x {}; only pictures of one size can be compared",
+            options.reference, a.width, a.height, options.test, b.width, b.height));
     if (a.encoding != b.encoding)
         fail(fmt::format("{} is {}, {} is not; convert one of them first",
                          a.encoding == Encoding::Linear ? options.reference : options.test,
@@ -100,7 +99,9 @@ public:
     {
         const Colors& a = pair_.reference;
         const auto evaluate = a.encoding == Encoding::Linear ? flip_hdr : flip_ldr;
-        if (!flip_) flip_ = evaluate(a.values, pair_.test.values, a.width, a.height, options_.pixels_per_degree);
+        if (!flip_)
+            flip_ = evaluate(a.values, pair_.test.values, a.width, a.height,
+                             options_.pixels_per_degree);
         return *flip_;
     }
 
@@ -156,17 +157,23 @@ Json bias_details(const Bias& bias)
 }
 
 // The metrics by name; beside them what says more about one of them.
-Json report_json(const CompareOptions& options, const Pair& pair, const CompareResult& result, Measuring& measuring)
+Json report_json(const CompareOptions& options, const Pair& pair, const CompareResult& result,
+                 Measuring& measuring)
 {
-    Json report = {{"reference", options.reference}, {"test", options.test},
-                   {"layer", options.layer},         {"width", pair.reference.width},
+    Json report = {{"reference", options.reference},
+                   {"test", options.test},
+                   {"layer", options.layer},
+                   {"width", pair.reference.width},
                    {"height", pair.reference.height}};
     Json limits = Json::array();
     for (const Measurement& m : result.measurements) {
         report[m.metric] = m.value;
-        if (m.limited) limits.push_back({{"metric", m.metric}, {"value", m.value}, {"max", m.limit}, {"within", m.within}});
+        if (m.limited)
+            limits.push_back(
+                {{"metric", m.metric}, {"value", m.value}, {"max", m.limit}, {"within", m.within}});
     }
-    if (measuring.has_flip()) report["flip"] = flip_details(measuring.flip(), options.pixels_per_degree);
+    if (measuring.has_flip())
+        report["flip"] = flip_details(measuring.flip(), options.pixels_per_degree);
     if (measuring.has_bias()) report["bias_details"] = bias_details(measuring.bias());
     if (measuring.has_differences())
         report["max_pixel"] = {measuring.differences().max_x, measuring.differences().max_y};
@@ -179,14 +186,18 @@ std::string line_of(const Measurement& m, const Json& report)
 {
     std::string line = fmt::format("{:<12} {:.6g}", m.metric, m.value);
     if (m.metric == "bias" && report["bias_details"].contains("interval"))
-        line += fmt::format("   95 % interval {:.6g} to {:.6g}", report["bias_details"]["interval"][0].get<double>(),
+        line += fmt::format("   95 % interval {:.6g} to {:.6g}",
+                            report["bias_details"]["interval"][0].get<double>(),
                             report["bias_details"]["interval"][1].get<double>());
     if (m.metric == "max")
-        line += fmt::format("   at pixel {},{}", report["max_pixel"][0].get<int>(), report["max_pixel"][1].get<int>());
-    if (m.metric == "yee") line += "   share of pixels that differ visibly";
+        line += fmt::format("   at pixel {},{}", report["max_pixel"][0].get<int>(),
+                            report["max_pixel"][1].get<int>());
+    if (m.metric == "yee") line += "   share of pixels whose colour differs visibly";
     if (m.metric == "flip.mean" && report["flip"].contains("exposures"))
-        line += fmt::format("   {} exposures from {:.3f} to {:.3f} stops", report["flip"]["exposures"][2].get<int>(),
-                            report["flip"]["exposures"][0].get<double>(), report["flip"]["exposures"][1].get<double>());
+        line += fmt::format("   {} exposures from {:.3f} to {:.3f} stops",
+                            report["flip"]["exposures"][2].get<int>(),
+                            report["flip"]["exposures"][0].get<double>(),
+                            report["flip"]["exposures"][1].get<double>());
     if (m.limited) line += fmt::format("   {} {:.6g}", m.within ? "within" : "ABOVE", m.limit);
     return line;
 }
@@ -194,12 +205,15 @@ std::string line_of(const Measurement& m, const Json& report)
 void print_report(const CompareOptions& options, const CompareResult& result, std::ostream& out)
 {
     const Json report = Json::parse(result.json);
-    if (options.json && !options.json_file.empty()) write_file_whole(options.json_file, result.json + "\n");
-    if (options.json && options.json_file.empty()) out << result.json << '\n';
-    else for (const Measurement& m : result.measurements) out << line_of(m, report) << '\n';
+    if (options.json && !options.json_file.empty())
+        write_file_whole(options.json_file, result.json + "\n");
+    if (options.json && options.json_file.empty())
+        out << result.json << '\n';
+    else
+        for (const Measurement& m : result.measurements) out << line_of(m, report) << '\n';
 }
 
-} // namespace
+}  // namespace
 
 CompareResult compare_pictures(const CompareOptions& options)
 {
@@ -213,7 +227,8 @@ CompareResult compare_pictures(const CompareOptions& options)
         result.within &= m.within;
     }
     if (!options.heat_map.empty())
-        write_picture(options.heat_map, heat_map(measuring.flip().map, pair.reference.width, pair.reference.height));
+        write_picture(options.heat_map,
+                      heat_map(measuring.flip().map, pair.reference.width, pair.reference.height));
     result.json = report_json(options, pair, result, measuring).dump(1);
     return result;
 }
@@ -231,4 +246,4 @@ int compare_command(const CompareOptions& options, std::ostream& out, std::ostre
     }
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

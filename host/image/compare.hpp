@@ -24,9 +24,10 @@ struct CompareOptions {
     std::string backends;   // "A,B" as given; the caller renders then, nothing here reads it
 };
 
-// What can be measured and limited. "bias" is limited by its absolute value, everything else as it is.
-constexpr const char* METRICS[] = {"rmse", "relmse", "mean", "max", "bias", "flip.mean", "flip.median",
-                                   "flip.p99", "flip.max", "yee"};
+// What can be measured and limited. "bias" is limited by its absolute value, everything else as it
+// is.
+constexpr const char* METRICS[] = {"rmse",      "relmse",      "mean",     "max",      "bias",
+                                   "flip.mean", "flip.median", "flip.p99", "flip.max", "yee"};
 
 struct Measurement {
     std::string metric;
@@ -38,21 +39,21 @@ struct Measurement {
 
 struct CompareResult {
     std::vector<Measurement> measurements;
-    std::string json;   // one object, see the manual
-    bool within = true; // all limits
+    std::string json;    // one object, see the manual
+    bool within = true;  // all limits
 };
 
-// Compares one pair and writes its heat map. Throws std::runtime_error for pictures that cannot be read or differ in
-// size or kind, and for unknown metrics.
+// Compares one pair and writes its heat map. Throws std::runtime_error for pictures that cannot be
+// read or differ in size or kind, and for unknown metrics.
 CompareResult compare_pictures(const CompareOptions& options);
 
-// The command: prints the report to `out`, one line for an error to `err`. Returns 0 within all given limits, 1 outside,
-// 2 on error. Does not look at `backends`.
+// The command: prints the report to `out`, one line for an error to `err`. Returns 0 within all
+// given limits, 1 outside, 2 on error. Does not look at `backends`.
 int compare_command(const CompareOptions& options, std::ostream& out, std::ostream& err);
 
-// The same for a manifest: a JSON list of {"name", "reference", "test", "limits": {METRIC: MAX, ...}} and, if wanted,
-// "layer", "ppd", "heat_map". Paths are relative to the manifest's folder. Every comparison runs; an error in one is
-// the result 2 at the end.
+// The same for a manifest: a JSON list of {"name", "reference", "test", "limits": {METRIC: MAX,
+// ...}} and, if wanted, "layer", "ppd", "heat_map". Paths are relative to the manifest's folder.
+// Every comparison runs; an error in one is the result 2 at the end.
 int compare_manifest(const CompareOptions& options, std::ostream& out, std::ostream& err);
 
-} // namespace diptych::image
+}  // namespace diptych::image

@@ -4,14 +4,26 @@
 
 namespace diptych::image {
 
-static const char* const FOOTER = R"(Metrics of test B against reference A, over all pixels and colour channels:
+// `--json A B` means the pictures A and B: the optional name after the flag took the first of them.
+static void give_back_picture(CompareOptions& options)
+{
+    const std::string& last = options.backends.empty() ? options.test : options.reference;
+    if (options.json_file.empty() || !last.empty() || !options.manifest.empty()) return;
+    options.test = options.reference;
+    options.reference = options.json_file;
+    options.json_file.clear();
+}
+
+static const char* const FOOTER =
+    R"(Metrics of test B against reference A, over all pixels and colour channels:
   rmse         root of the mean squared difference
   relmse       mean of (b - a)^2 / (a^2 + 0.01 mean(a)^2)
   mean, max    mean and largest absolute difference
   bias         mean of b - a, with its 95 % interval when a picture has the layer standard_error
   flip.mean    FLIP, what a viewer notices when flipping between the two: LDR for 8- and 16-bit
                pictures, HDR for floating point; also flip.median, flip.p99 (99th percentile), flip.max
-  yee          share of pixels that OpenImageIO's perceptual comparison tells apart
+  yee          share of pixels that OpenImageIO's perceptual comparison tells apart (by their colour
+               only: its luminance test has no effect in OpenImageIO 2.4)
 LDR pictures are compared in their sRGB values, 0 to 1; EXR, HDR and float TIFF in linear values.
 
 A manifest is a JSON list, paths relative to it:
@@ -22,19 +34,30 @@ Exit code: 0 within all given limits, 1 outside, 2 on error (pictures of differe
 
 CLI::App* add_compare_command(CLI::App& app, CompareOptions& options)
 {
-    CLI::App* command = app.add_subcommand("compare", "Compare two pictures, a list of pairs, or two backends on a scene");
+    CLI::App* command = app.add_subcommand(
+        "compare", "Compare two pictures, a list of pairs, or two backends on a scene");
     command->footer(FOOTER);
     command->add_option("A", options.reference, "Reference picture; with --backends, the scene");
     command->add_option("B", options.test, "Picture under test, of the same size");
-    command->add_option("--metric", options.metrics, "What to measure (repeat for more; all when not given)")
+    command
+        ->add_option("--metric", options.metrics,
+                     "What to measure (repeat for more; all when not given)")
         ->type_name("NAME")
         ->allow_extra_args(false);
-    command->add_option("--max", options.limits, "Limit of the metric in the same place: one for each --metric, or none")
+    command
+        ->add_option("--max", options.limits,
+                     "Limit of the metric in the same place: one for each --metric, or none")
         ->type_name("VALUE")
         ->allow_extra_args(false);
-    command->add_option("--layer", options.layer, "Compare this layer of EXR files instead of the colours")->type_name("NAME");
-    command->add_option("-o,--output", options.heat_map, "Write the FLIP map in magma colours")->type_name("FILE");
-    command->add_option("--ppd", options.pixels_per_degree, "Pixels per degree of sight for FLIP (67.02 when not given)")
+    command
+        ->add_option("--layer", options.layer,
+                     "Compare this layer of EXR files instead of the colours")
+        ->type_name("NAME");
+    command->add_option("-o,--output", options.heat_map, "Write the FLIP map in magma colours")
+        ->type_name("FILE");
+    command
+        ->add_option("--ppd", options.pixels_per_degree,
+                     "Pixels per degree of sight for FLIP (67.02 when not given)")
         ->type_name("NUMBER");
     CLI::Option* json = command->add_option_function<std::vector<std::string>>(
         "--json",
@@ -42,16 +65,24 @@ CLI::App* add_compare_command(CLI::App& app, CompareOptions& options)
             options.json = true;
             options.json_file = file.empty() ? "" : file.front();
         },
-        "Print one JSON object instead of text, or write it to FILE beside the text (put it after A and B)");
+        "Print one JSON object instead of text, or write it to FILE beside the text (put it after "
+        "A and B)");
     json->expected(0, 1)->type_name("[FILE]");
-    CLI::Option* manifest = command->add_option("--manifest", options.manifest, "Run the comparisons listed in a JSON file");
+    CLI::Option* manifest = command->add_option("--manifest", options.manifest,
+                                                "Run the comparisons listed in a JSON file");
     manifest->type_name("FILE");
-    command->add_option("--junit", options.junit, "Where the manifest's results go as JUnit XML (standard output when not given)")
+    command
+        ->add_option(
+            "--junit", options.junit,
+            "Where the manifest's results go as JUnit XML (standard output when not given)")
         ->type_name("FILE")
         ->needs(manifest);
-    command->add_option("--backends", options.backends, "Render scene A on two backends with the same samples and compare those")
+    command
+        ->add_option("--backends", options.backends,
+                     "Render scene A on two backends with the same samples and compare those")
         ->type_name("A,B");
+    command->parse_complete_callback([&options] { give_back_picture(options); });
     return command;
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

@@ -56,11 +56,15 @@ std::string beside(const std::string& manifest, const std::string& path)
 Case read_case(const Json& item, size_t index, const CompareOptions& common)
 {
     const std::string where = fmt::format("{}: comparison {}", common.manifest, index + 1);
-    if (!item.is_object()) fail(where, "must be an object with \"reference\", \"test\" and \"limits\"");
+    if (!item.is_object())
+        fail(where, "must be an object with \"reference\", \"test\" and \"limits\"");
     for (const auto& [key, value] : item.items()) {
-        static const char* const known[] = {"name", "reference", "test", "limits", "layer", "ppd", "heat_map"};
+        static const char* const known[] = {"name",  "reference", "test",    "limits",
+                                            "layer", "ppd",       "heat_map"};
         if (std::find(std::begin(known), std::end(known), key) == std::end(known))
-            fail(where, fmt::format("unknown key \"{}\"; there are name, reference, test, limits, layer, ppd, heat_map", key));
+            fail(where, fmt::format("unknown key \"{}\"; there are name, reference, test, limits, "
+                                    "layer, ppd, heat_map",
+                                    key));
     }
     Case result;
     CompareOptions& options = result.options;
@@ -101,12 +105,14 @@ Outcome run(const Case& one)
         outcome.json = result.json;
         for (const Measurement& m : result.measurements)
             if (!m.within)
-                outcome.failure += fmt::format("{}{} is {:.6g}, above {:.6g}", outcome.failure.empty() ? "" : "; ",
-                                               m.metric, m.value, m.limit);
+                outcome.failure +=
+                    fmt::format("{}{} is {:.6g}, above {:.6g}", outcome.failure.empty() ? "" : "; ",
+                                m.metric, m.value, m.limit);
     } catch (const std::exception& error) {
         outcome.error = error.what();
     }
-    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    outcome.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return outcome;
 }
 
@@ -115,11 +121,16 @@ std::string xml_text(const std::string& text)
 {
     std::string out;
     for (const char c : text) {
-        if (c == '&') out += "&amp;";
-        else if (c == '<') out += "&lt;";
-        else if (c == '>') out += "&gt;";
-        else if (c == '"') out += "&quot;";
-        else out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
     }
     return out;
 }
@@ -134,17 +145,23 @@ std::string junit_xml(const std::string& manifest, const std::vector<Outcome>& o
         failures += !outcome.failure.empty();
         errors += !outcome.error.empty();
         seconds += outcome.seconds;
-        const std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", suite,
-                                             xml_text(outcome.name), outcome.seconds);
+        const std::string head =
+            fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", suite,
+                        xml_text(outcome.name), outcome.seconds);
         if (!outcome.error.empty())
-            cases += fmt::format("{}>\n      <error message=\"{}\"/>\n    </testcase>\n", head, xml_text(outcome.error));
+            cases += fmt::format("{}>\n      <error message=\"{}\"/>\n    </testcase>\n", head,
+                                 xml_text(outcome.error));
         else if (!outcome.failure.empty())
-            cases += fmt::format("{}>\n      <failure message=\"{}\"/>\n    </testcase>\n", head, xml_text(outcome.failure));
-        else cases += head + "/>\n";
+            cases += fmt::format("{}>\n      <failure message=\"{}\"/>\n    </testcase>\n", head,
+                                 xml_text(outcome.failure));
+        else
+            cases += head + "/>\n";
     }
-    const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"",
-                                           outcomes.size(), failures, errors, seconds);
-    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n  <testsuite name=\"{1}\" {0}>\n"
+    const std::string counts =
+        fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"", outcomes.size(),
+                    failures, errors, seconds);
+    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n  <testsuite "
+                       "name=\"{1}\" {0}>\n"
                        "{2}  </testsuite>\n</testsuites>\n",
                        counts, suite, cases);
 }
@@ -153,21 +170,26 @@ std::string json_list(const std::vector<Outcome>& outcomes)
 {
     Json list = Json::array();
     for (const Outcome& outcome : outcomes) {
-        Json item = outcome.json.empty() ? Json{{"error", outcome.error}} : Json::parse(outcome.json);
+        Json item =
+            outcome.json.empty() ? Json{{"error", outcome.error}} : Json::parse(outcome.json);
         item["name"] = outcome.name;
         list.push_back(item);
     }
     return list.dump(1) + "\n";
 }
 
-// The XML and the JSON where they were asked for; the lines a person reads unless standard output is taken.
+// The XML and the JSON where they were asked for; the lines a person reads unless standard output
+// is taken.
 void report(const CompareOptions& options, const std::vector<Outcome>& outcomes, std::ostream& out)
 {
     const std::string xml = junit_xml(options.manifest, outcomes);
     if (!options.junit.empty()) write_file_whole(options.junit, xml);
-    if (options.json && !options.json_file.empty()) write_file_whole(options.json_file, json_list(outcomes));
-    if (options.json && options.json_file.empty()) out << json_list(outcomes);
-    else if (options.junit.empty()) out << xml;
+    if (options.json && !options.json_file.empty())
+        write_file_whole(options.json_file, json_list(outcomes));
+    if (options.json && options.json_file.empty())
+        out << json_list(outcomes);
+    else if (options.junit.empty())
+        out << xml;
     else
         for (const Outcome& outcome : outcomes)
             out << fmt::format("{:<7} {}{}\n",
@@ -177,7 +199,7 @@ void report(const CompareOptions& options, const std::vector<Outcome>& outcomes,
                                outcome.name, outcome.failure.empty() ? "" : ": " + outcome.failure);
 }
 
-} // namespace
+}  // namespace
 
 int compare_manifest(const CompareOptions& options, std::ostream& out, std::ostream& err)
 {
@@ -187,7 +209,8 @@ int compare_manifest(const CompareOptions& options, std::ostream& out, std::ostr
         report(options, outcomes, out);
         int code = 0;
         for (const Outcome& outcome : outcomes) {
-            if (!outcome.error.empty()) err << "diptych: " << outcome.name << ": " << outcome.error << '\n';
+            if (!outcome.error.empty())
+                err << "diptych: " << outcome.name << ": " << outcome.error << '\n';
             code = std::max(code, !outcome.error.empty() ? 2 : !outcome.failure.empty() ? 1 : 0);
         }
         return code;
@@ -197,4 +220,4 @@ int compare_manifest(const CompareOptions& options, std::ostream& out, std::ostr
     }
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

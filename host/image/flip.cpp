@@ -33,7 +33,8 @@ float dot3(const float (&row)[3], const Rgb& v)
 // Relative to white, so that neutral colours have three equal values.
 Rgb relative_xyz(const Rgb& rgb)
 {
-    return {dot3(TO_XYZ[0], rgb) / WHITE[0], dot3(TO_XYZ[1], rgb) / WHITE[1], dot3(TO_XYZ[2], rgb) / WHITE[2]};
+    return {dot3(TO_XYZ[0], rgb) / WHITE[0], dot3(TO_XYZ[1], rgb) / WHITE[1],
+            dot3(TO_XYZ[2], rgb) / WHITE[2]};
 }
 
 // The linearised CIELAB that contrast sensitivity is measured in (2020 paper, section 4.1.1).
@@ -70,7 +71,8 @@ float hyab(const Rgb& a, const Rgb& b)
     return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-// One-dimensional filters; every two-dimensional one of the papers is a product of two, or a sum of two products.
+// One-dimensional filters; every two-dimensional one of the papers is a product of two, or a sum of
+// two products.
 struct Filter {
     int radius = 0;
     std::vector<float> taps;
@@ -92,22 +94,21 @@ Filter sampled(int radius, double (*value)(double x, double scale), double scale
     return filter;
 }
 
-double gaussian(double x, double sigma)
-{
-    return std::exp(-x * x / (2 * sigma * sigma));
-}
+double gaussian(double x, double sigma) { return std::exp(-x * x / (2 * sigma * sigma)); }
 
 // What the eye does to the picture, for one viewing distance.
 struct Observer {
-    Filter luminance, red_green, blue_yellow_wide, blue_yellow_narrow;  // contrast sensitivity (2020, table 1)
-    float wide_share = 0;                                               // of the first blue-yellow term
-    Filter smooth, edge, point;                                         // feature detection (2020, section 4.2)
+    Filter luminance, red_green, blue_yellow_wide,
+        blue_yellow_narrow;      // contrast sensitivity (2020, table 1)
+    float wide_share = 0;        // of the first blue-yellow term
+    Filter smooth, edge, point;  // feature detection (2020, section 4.2)
     int halo = 0;
     float largest_color = 0;  // HyAB of green and blue, to the power below
 
     explicit Observer(double pixels_per_degree)
     {
-        // A term a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees, is a Gaussian of this deviation in pixels.
+        // A term a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees, is a Gaussian of this deviation
+        // in pixels.
         const auto deviation = [=](double b) { return std::sqrt(b / 2) / PI * pixels_per_degree; };
         const int radius = int(std::ceil(3 * deviation(0.04)));
         luminance = sampled(radius, gaussian, deviation(0.0047));
@@ -121,8 +122,11 @@ struct Observer {
         const double sigma = 0.5 * 0.082 * pixels_per_degree;
         const int reach = int(std::ceil(3 * sigma));
         smooth = sampled(reach, gaussian, sigma);
-        edge = sampled(reach, [](double x, double s) { return -x * gaussian(x, s); }, sigma);
-        point = sampled(reach, [](double x, double s) { return (x * x / (s * s) - 1) * gaussian(x, s); }, sigma);
+        edge = sampled(
+            reach, [](double x, double s) { return -x * gaussian(x, s); }, sigma);
+        point = sampled(
+            reach, [](double x, double s) { return (x * x / (s * s) - 1) * gaussian(x, s); },
+            sigma);
         halo = std::max(radius, reach);
         largest_color = std::pow(hyab(to_hunt_lab({0, 1, 0}), to_hunt_lab({0, 0, 1})), 0.7f);
     }
@@ -136,7 +140,8 @@ struct Observer {
     }
 };
 
-// A band of rows with its neighbours above and below; rows and columns beyond the picture repeat its border.
+// A band of rows with its neighbours above and below; rows and columns beyond the picture repeat
+// its border.
 class Band {
 public:
     Band(int width, int first, int rows, int halo, int height)
@@ -146,7 +151,10 @@ public:
 
     int rows() const { return rows_; }
     int stored_rows() const { return rows_ + 2 * halo_; }
-    int picture_row(int stored) const { return std::clamp(first_ + stored - halo_, 0, height_ - 1); }
+    int picture_row(int stored) const
+    {
+        return std::clamp(first_ + stored - halo_, 0, height_ - 1);
+    }
 
     // Filters every stored row along x, then the band's own rows along y.
     Plane filtered(const Plane& stored, const Filter& along_x, const Filter& along_y) const
@@ -164,7 +172,8 @@ public:
             std::copy_n(row, width_, padded.begin() + filter.radius);
             std::fill_n(padded.end() - filter.radius, filter.radius, row[width_ - 1]);
             float* to = out.data() + size_t(y) * width_;
-            for (int k = 0; k <= 2 * filter.radius; ++k) add_scaled(to, padded.data() + k, filter.taps[k]);
+            for (int k = 0; k <= 2 * filter.radius; ++k)
+                add_scaled(to, padded.data() + k, filter.taps[k]);
         }
         return out;
     }
@@ -175,7 +184,8 @@ public:
         for (int y = 0; y < rows_; ++y) {
             float* to = out.data() + size_t(y) * width_;
             for (int k = -filter.radius; k <= filter.radius; ++k)
-                add_scaled(to, stored.data() + size_t(y + halo_ + k) * width_, filter.taps[k + filter.radius]);
+                add_scaled(to, stored.data() + size_t(y + halo_ + k) * width_,
+                           filter.taps[k + filter.radius]);
         }
         return out;
     }
@@ -198,7 +208,9 @@ struct Source {
     Rgb linear(size_t pixel) const
     {
         Rgb color = {values[3 * pixel], values[3 * pixel + 1], values[3 * pixel + 2]};
-        for (float& c : color) c = hdr ? tone_mapped(std::max(c, 0.0f) * scale) : srgb_decode(std::clamp(c, 0.0f, 1.0f));
+        for (float& c : color)
+            c = hdr ? tone_mapped(std::max(c, 0.0f) * scale)
+                    : srgb_decode(std::clamp(c, 0.0f, 1.0f));
         return color;
     }
 
@@ -229,12 +241,15 @@ Seen look(const Source& source, const Band& band, const Observer& eye, int width
     const Plane y = band.filtered(opponent[0], eye.luminance, eye.luminance);
     const Plane cx = band.filtered(opponent[1], eye.red_green, eye.red_green);
     const Plane cz_wide = band.filtered(opponent[2], eye.blue_yellow_wide, eye.blue_yellow_wide);
-    const Plane cz_narrow = band.filtered(opponent[2], eye.blue_yellow_narrow, eye.blue_yellow_narrow);
+    const Plane cz_narrow =
+        band.filtered(opponent[2], eye.blue_yellow_narrow, eye.blue_yellow_narrow);
 
     for (float& v : opponent[0]) v = (v + 16) / 116;
     const Plane smoothed = band.across(opponent[0], eye.smooth);
-    const Plane edge_x = band.filtered(opponent[0], eye.edge, eye.smooth), edge_y = band.down(smoothed, eye.edge);
-    const Plane point_x = band.filtered(opponent[0], eye.point, eye.smooth), point_y = band.down(smoothed, eye.point);
+    const Plane edge_x = band.filtered(opponent[0], eye.edge, eye.smooth),
+                edge_y = band.down(smoothed, eye.edge);
+    const Plane point_x = band.filtered(opponent[0], eye.point, eye.smooth),
+                point_y = band.down(smoothed, eye.point);
 
     Seen seen{std::vector<Rgb>(y.size()), Plane(y.size()), Plane(y.size())};
     for (size_t i = 0; i < y.size(); ++i) {
@@ -248,7 +263,8 @@ Seen look(const Source& source, const Band& band, const Observer& eye, int width
     return seen;
 }
 
-// The colour difference, compressed so that what exceeds 40 % of the largest possible takes the last 5 % of the range.
+// The colour difference, compressed so that what exceeds 40 % of the largest possible takes the
+// last 5 % of the range.
 float color_difference(const Rgb& a, const Rgb& b, float largest)
 {
     const float knee = 0.4f * largest, at_knee = 0.95f;
@@ -265,8 +281,8 @@ float difference(const Seen& a, const Seen& b, size_t i, const Observer& eye)
 }
 
 // Raises the map to the difference of the two sources, in independent bands of rows.
-void raise_map(std::vector<float>& map, const Source& reference, const Source& test, int width, int height,
-               const Observer& eye)
+void raise_map(std::vector<float>& map, const Source& reference, const Source& test, int width,
+               int height, const Observer& eye)
 {
     const int band_rows = std::max(64, 4 * eye.halo);
     const int bands = (height + band_rows - 1) / band_rows;
@@ -311,20 +327,24 @@ Luminances luminances_of(std::span<const float> values)
 {
     std::vector<float> y(values.size() / 3);
     for (size_t i = 0; i < y.size(); ++i)
-        y[i] = std::max(0.0f, dot3(TO_XYZ[1], {values[3 * i], values[3 * i + 1], values[3 * i + 2]}));
+        y[i] =
+            std::max(0.0f, dot3(TO_XYZ[1], {values[3 * i], values[3 * i + 1], values[3 * i + 2]}));
     std::sort(y.begin(), y.end());
     return {y.back(), quantile(y, 0.5)};
 }
 
-// The luminance that the tone mapper takes to 0.85: the positive root of a quadratic (2021 paper, section 3.1).
+// The luminance that the tone mapper takes to 0.85: the positive root of a quadratic (2021 paper,
+// section 3.1).
 double luminance_at_target()
 {
     const double target = 0.85;
-    const double a = 0.36 * (2.51 - target * 2.43), b = 0.6 * (0.03 - target * 0.59), c = -target * 0.14;
+    const double a = 0.36 * (2.51 - target * 2.43), b = 0.6 * (0.03 - target * 0.59),
+                 c = -target * 0.14;
     return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 
-void choose_exposures(FlipResult& result, std::span<const float> reference, std::span<const float> test)
+void choose_exposures(FlipResult& result, std::span<const float> reference,
+                      std::span<const float> test)
 {
     Luminances y = luminances_of(reference);
     if (y.brightest <= 0) y = luminances_of(test);
@@ -339,16 +359,17 @@ FlipResult empty_result(int width, int height, double pixels_per_degree)
 {
     if (!(pixels_per_degree >= 1 && pixels_per_degree <= 1000))
         throw std::runtime_error(
-            fmt::format("--ppd {}: pixels per degree lie between 1 and 1000; 67.02 is usual", pixels_per_degree));
+            fmt::format("--ppd {}: pixels per degree lie between 1 and 1000; 67.02 is usual",
+                        pixels_per_degree));
     FlipResult result;
     result.map.assign(size_t(width) * height, 0.0f);
     return result;
 }
 
-} // namespace
+}  // namespace
 
-FlipResult flip_ldr(std::span<const float> reference, std::span<const float> test, int width, int height,
-                    double pixels_per_degree)
+FlipResult flip_ldr(std::span<const float> reference, std::span<const float> test, int width,
+                    int height, double pixels_per_degree)
 {
     FlipResult result = empty_result(width, height, pixels_per_degree);
     raise_map(result.map, {reference}, {test}, width, height, Observer(pixels_per_degree));
@@ -356,8 +377,8 @@ FlipResult flip_ldr(std::span<const float> reference, std::span<const float> tes
     return result;
 }
 
-FlipResult flip_hdr(std::span<const float> reference, std::span<const float> test, int width, int height,
-                    double pixels_per_degree)
+FlipResult flip_hdr(std::span<const float> reference, std::span<const float> test, int width,
+                    int height, double pixels_per_degree)
 {
     FlipResult result = empty_result(width, height, pixels_per_degree);
     choose_exposures(result, reference, test);
@@ -371,4 +392,4 @@ FlipResult flip_hdr(std::span<const float> reference, std::span<const float> tes
     return result;
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

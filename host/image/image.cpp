@@ -45,8 +45,9 @@ const Layer* find_layer(const Picture& picture, const std::string& name)
 const Layer& beauty_of(const Picture& picture)
 {
     const Layer* layer = find_layer(picture, "");
-    if (!layer) throw std::runtime_error("picture: no colour channels R, G, B; name one of its layers");
+    if (!layer)
+        throw std::runtime_error("picture: no colour channels R, G, B; name one of its layers");
     return *layer;
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

@@ -1,5 +1,6 @@
-// Pictures in memory and on disk. Nothing here knows the renderer: OpenImageIO reads and encodes, this folder decides
-// how layers are named, what a display picture shows, and that no half-written file is ever seen.
+// Pictures in memory and on disk. Nothing here knows the renderer: OpenImageIO reads and encodes,
+// this folder decides how layers are named, what a display picture shows, and that no half-written
+// file is ever seen.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +11,10 @@
 
 namespace diptych::image {
 
-// One named group of channels, pixel by pixel, rows from the top: `pixels` for quantities, `ids` for whole numbers
-// (object and material ids, sample counts). Exactly one of the two is filled, width * height * channels.size() long.
-// The beauty layer has the empty name; others are stored as "name.channel", or plain "name" for an empty channel.
+// One named group of channels, pixel by pixel, rows from the top: `pixels` for quantities, `ids`
+// for whole numbers (object and material ids, sample counts). Exactly one of the two is filled,
+// width * height * channels.size() long. The beauty layer has the empty name; others are stored as
+// "name.channel", or plain "name" for an empty channel.
 struct Layer {
     std::string name;
     std::vector<std::string> channels;
@@ -34,12 +36,14 @@ struct Picture {
     Encoding encoding = Encoding::Linear;
 };
 
-// Layers in the order and with the channel names that other programs expect. Values as described at each.
-Layer beauty_layer(std::vector<float> rgba);              // R,G,B,A: radiance, alpha associated
-Layer albedo_layer(std::vector<float> rgb);               // albedo.R,G,B
-Layer normal_layer(std::vector<float> xyz);               // normal.X,Y,Z: shading normal, world space
-Layer depth_layer(std::vector<float> distances);          // Z: the one reserved name for depth in an OpenEXR file
-Layer standard_error_layer(std::vector<float> rgb);       // standard_error.R,G,B: of the beauty's mean
+// Layers in the order and with the channel names that other programs expect. Values as described at
+// each.
+Layer beauty_layer(std::vector<float> rgba);  // R,G,B,A: radiance, alpha associated
+Layer albedo_layer(std::vector<float> rgb);   // albedo.R,G,B
+Layer normal_layer(std::vector<float> xyz);   // normal.X,Y,Z: shading normal, world space
+Layer depth_layer(
+    std::vector<float> distances);  // Z: the one reserved name for depth in an OpenEXR file
+Layer standard_error_layer(std::vector<float> rgb);  // standard_error.R,G,B: of the beauty's mean
 Layer id_layer(std::string name, std::vector<uint32_t>);  // object_id, material_id, sample_count
 
 // The layer of that name, or null.
@@ -52,31 +56,36 @@ enum class View { Standard, Neutral, Filmic };
 struct WriteOptions {
     bool half = false;         // EXR: colours and normals as half; depth stays float, ids stay uint
     bool sixteen_bit = false;  // PNG and TIFF
-    bool alpha = false;        // PNG and TIFF: with the alpha channel, unassociated; otherwise opaque, as the beauty is
-    float exposure = 0;        // stops; PNG, JPEG, TIFF only
+    bool alpha = false;  // PNG and TIFF: with the alpha channel, unassociated; otherwise opaque, as
+                         // the beauty is
+    float exposure = 0;  // stops; PNG, JPEG, TIFF only
     View view = View::Standard;
 };
 
-// Encodes by extension: exr holds every layer and the metadata; png, jpg, jpeg, tif, tiff show the beauty layer.
-// The same input gives the same bytes. The file appears whole or not at all: it is encoded in memory, written to a
-// temporary name in the same folder and renamed. Throws std::runtime_error (path: what; what to do).
-void write_picture(const std::string& path, const Picture& picture, const WriteOptions& options = {});
+// Encodes by extension: exr holds every layer and the metadata; png, jpg, jpeg, tif, tiff show the
+// beauty layer. The same input gives the same bytes. The file appears whole or not at all: it is
+// encoded in memory, written to a temporary name in the same folder and renamed. Throws
+// std::runtime_error (path: what; what to do).
+void write_picture(const std::string& path, const Picture& picture,
+                   const WriteOptions& options = {});
 
-// Throws now what write_picture would throw after the rendering: unknown extension, no such folder, not writable.
+// Throws now what write_picture would throw after the rendering: unknown extension, no such folder,
+// not writable.
 void check_writable(const std::string& path);
 
-// Puts bytes at a path by way of a temporary name in the same folder; for any file that must not be half-written.
+// Puts bytes at a path by way of a temporary name in the same folder; for any file that must not be
+// half-written.
 void write_file_whole(const std::string& path, std::string_view bytes);
 
 struct ReadLimits {
-    uint64_t pixels = 1ull << 28;   // 16384 x 16384
-    uint64_t values = 1ull << 31;   // pixels x channels
+    uint64_t pixels = 1ull << 28;  // 16384 x 16384
+    uint64_t values = 1ull << 31;  // pixels x channels
 };
 
-// Every channel of every part that covers the same window, grouped into layers: "x.R" goes to layer "x", R, G, B, A to
-// the beauty, Z to "depth". What the file stores outside its display window is cropped, what it lacks is zero. Sizes
-// are checked from the header, before anything is allocated. Throws std::runtime_error with one line for any file that
-// cannot be read whole.
+// Every channel of every part that covers the same window, grouped into layers: "x.R" goes to layer
+// "x", R, G, B, A to the beauty, Z to "depth". What the file stores outside its display window is
+// cropped, what it lacks is zero. Sizes are checked from the header, before anything is allocated.
+// Throws std::runtime_error with one line for any file that cannot be read whole.
 Picture read_picture(const std::string& path, const ReadLimits& limits = {});
 
-} // namespace diptych::image
+}  // namespace diptych::image

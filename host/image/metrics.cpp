@@ -32,9 +32,10 @@ void check_finite(const Colors& colors, const std::vector<float>& values, const 
     for (size_t k = 0; k < values.size(); ++k) {
         if (std::isfinite(values[k])) continue;
         const size_t pixel = k / 3;
-        throw std::runtime_error(fmt::format("{}: pixel {},{} is {}; a picture with such values cannot be compared", where,
-                                             pixel % colors.width, pixel / colors.width,
-                                             std::isnan(values[k]) ? "not a number" : "infinite"));
+        throw std::runtime_error(
+            fmt::format("{}: pixel {},{} is {}; a picture with such values cannot be compared",
+                        where, pixel % colors.width, pixel / colors.width,
+                        std::isnan(values[k]) ? "not a number" : "infinite"));
     }
 }
 
@@ -42,7 +43,8 @@ std::string layer_names(const Picture& picture)
 {
     std::string names;
     for (const Layer& layer : picture.layers)
-        names += (names.empty() ? "" : ", ") + (layer.name.empty() ? std::string("its colours") : layer.name);
+        names += (names.empty() ? "" : ", ") +
+                 (layer.name.empty() ? std::string("its colours") : layer.name);
     return names;
 }
 
@@ -59,14 +61,15 @@ std::vector<float> linear_values(const Colors& colors)
     return values;
 }
 
-} // namespace
+}  // namespace
 
 Colors colors_of(const Picture& picture, const std::string& name, const std::string& where)
 {
     const Layer* layer = find_layer(picture, name);
     if (!layer)
         throw std::runtime_error(fmt::format("{}: no {}; it holds {}", where,
-                                             name.empty() ? "colours" : "layer '" + name + "'", layer_names(picture)));
+                                             name.empty() ? "colours" : "layer '" + name + "'",
+                                             layer_names(picture)));
     Colors colors{picture.width, picture.height, picture.encoding, {}, {}};
     const size_t pixels = size_t(picture.width) * picture.height;
     colors.values = three_channels(*layer, pixels);
@@ -120,7 +123,8 @@ Bias bias_of(const Colors& reference, const Colors& test)
             variance += together * together;
             for (int c = 0; c < 3; ++c) variances[c] += double(error[c]) * error[c];
         }
-        for (size_t c = 0; c < 3; ++c) bias.channels[c] += double(test.values[3 * i + c]) - reference.values[3 * i + c];
+        for (size_t c = 0; c < 3; ++c)
+            bias.channels[c] += double(test.values[3 * i + c]) - reference.values[3 * i + c];
     }
     for (double& channel : bias.channels) channel /= double(pixels);
     bias.mean = (bias.channels[0] + bias.channels[1] + bias.channels[2]) / 3;
@@ -140,4 +144,4 @@ double yee_share(const Colors& reference, const Colors& test)
     return double(differing) / (double(reference.width) * reference.height);
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

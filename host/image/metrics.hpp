@@ -10,8 +10,8 @@
 
 namespace diptych::image {
 
-// One layer of a picture as three values a pixel (a single channel repeated), all of them finite, and the standard
-// error of each where the picture has that layer.
+// One layer of a picture as three values a pixel (a single channel repeated), all of them finite,
+// and the standard error of each where the picture has that layer.
 struct Colors {
     int width = 0;
     int height = 0;
@@ -20,14 +20,16 @@ struct Colors {
     std::vector<float> standard_error;  // empty: not known
 };
 
-// Throws std::runtime_error, naming the pixel, for a NaN or an infinity; and for a layer that is not there (`name` empty:
-// the beauty). `where` names the picture in errors.
+// Throws std::runtime_error, naming the pixel, for a NaN or an infinity; and for a layer that is
+// not there (`name` empty: the beauty). `where` names the picture in errors.
 Colors colors_of(const Picture& picture, const std::string& name, const std::string& where);
 
-// All are of test against reference, over every pixel and channel, in the values as stored (radiance, or sRGB 0..1).
+// All are of test against reference, over every pixel and channel, in the values as stored
+// (radiance, or sRGB 0..1).
 struct PixelDifferences {
     double rmse = 0;
-    double relmse = 0;  // mean of (t - r)^2 / (r^2 + 0.01 mean(r)^2), mean(r) over all channels; 0 where both are black
+    double relmse = 0;  // mean of (t - r)^2 / (r^2 + 0.01 mean(r)^2), mean(r) over all channels; 0
+                        // where both are black
     double mean = 0;    // mean |t - r|
     double max = 0;     // largest |t - r|, first found at:
     int max_x = 0;
@@ -35,9 +37,10 @@ struct PixelDifferences {
 };
 PixelDifferences pixel_differences(const Colors& reference, const Colors& test);
 
-// The signed mean difference, t - r, and the half width of its 95 % confidence interval when at least one picture has a
-// standard-error layer (a picture without one counts as exact). Pixels are taken as independent, the channels of a pixel
-// as fully correlated, since one path carries all three: the interval is never too narrow on that account.
+// The signed mean difference, t - r, and the half width of its 95 % confidence interval when at
+// least one picture has a standard-error layer (a picture without one counts as exact). Pixels are
+// taken as independent, the channels of a pixel as fully correlated, since one path carries all
+// three: the interval is never too narrow on that account.
 struct Bias {
     double mean = 0;
     std::optional<double> half_width;
@@ -46,7 +49,9 @@ struct Bias {
 };
 Bias bias_of(const Colors& reference, const Colors& test);
 
-// The share of pixels that OpenImageIO's perceptual comparison (Hector Yee's metric, 100 cd/m2, 45 degrees) tells apart.
+// The share of pixels that OpenImageIO's perceptual comparison (Hector Yee's metric, 100 cd/m2, 45
+// degrees) tells apart. Take it as a second opinion on colour only: in OpenImageIO 2.4 its
+// luminance test reads a channel that is not there and never fails (black passes against white).
 double yee_share(const Colors& reference, const Colors& test);
 
-} // namespace diptych::image
+}  // namespace diptych::image

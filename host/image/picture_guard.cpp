@@ -30,16 +30,20 @@ struct Reader {
     {
         if (at > bytes.size() || bytes.size() - at < size_t(size)) fail(where, "is cut short");
         uint64_t value = 0;
-        for (int k = 0; k < size; ++k) value = value << 8 | bytes[at + (big_endian ? k : size - 1 - k)];
+        for (int k = 0; k < size; ++k)
+            value = value << 8 | bytes[at + (big_endian ? k : size - 1 - k)];
         return value;
     }
 };
 
-void check_pixels(const std::string& where, uint64_t width, uint64_t height, const ReadLimits& limits)
+void check_pixels(const std::string& where, uint64_t width, uint64_t height,
+                  const ReadLimits& limits)
 {
-    if (width == 0 || height == 0) fail(where, fmt::format("its header gives {} x {} pixels", width, height));
+    if (width == 0 || height == 0)
+        fail(where, fmt::format("its header gives {} x {} pixels", width, height));
     if (height > limits.pixels / width)
-        fail(where, fmt::format("{} x {} pixels are more than the {} allowed", width, height, limits.pixels));
+        fail(where, fmt::format("{} x {} pixels are more than the {} allowed", width, height,
+                                limits.pixels));
 }
 
 // The cyclic redundancy check of PNG (ISO 3309), bit by bit for each of the 256 bytes.
@@ -63,10 +67,12 @@ void check_png_header(const Reader& file, size_t data, size_t size, const ReadLi
     if (size != 13) fail(file.where, "is corrupt (its PNG header has the wrong size)");
     check_pixels(file.where, file.number(data, 4), file.number(data + 4, 4), limits);
     const int depth = file.bytes[data + 8], kind = file.bytes[data + 9];
-    const bool known = kind == 0 ? depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16
-                     : kind == 3 ? depth == 1 || depth == 2 || depth == 4 || depth == 8
-                                 : (kind == 2 || kind == 4 || kind == 6) && (depth == 8 || depth == 16);
-    if (!known) fail(file.where, fmt::format("is corrupt (PNG colour type {} with {} bits)", kind, depth));
+    const bool known =
+        kind == 0   ? depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16
+        : kind == 3 ? depth == 1 || depth == 2 || depth == 4 || depth == 8
+                    : (kind == 2 || kind == 4 || kind == 6) && (depth == 8 || depth == 16);
+    if (!known)
+        fail(file.where, fmt::format("is corrupt (PNG colour type {} with {} bits)", kind, depth));
 }
 
 // Header, palette, transparency and pixels, each with a right checksum; nothing else.
@@ -79,26 +85,30 @@ Bytes guard_png(const Bytes& bytes, const std::string& where, const ReadLimits& 
         const size_t size = file.number(at, 4);
         (void)file.number(at + 8 + size, 4);  // the whole chunk is there
         const std::string type(bytes.begin() + long(at) + 4, bytes.begin() + long(at) + 8);
-        if ((at == 8) != (type == "IHDR")) fail(where, "is corrupt (its PNG header is out of place)");
+        if ((at == 8) != (type == "IHDR"))
+            fail(where, "is corrupt (its PNG header is out of place)");
         const bool critical = type == "IHDR" || type == "PLTE" || type == "IDAT" || type == "IEND";
-        if (!critical && (type[0] & 32) == 0) fail(where, "is corrupt (PNG chunk of an unknown kind)");
+        if (!critical && (type[0] & 32) == 0)
+            fail(where, "is corrupt (PNG chunk of an unknown kind)");
         if (critical || type == "tRNS") {
             if (crc_of(&bytes[at + 4], size + 4) != file.number(at + 8 + size, 4))
                 fail(where, fmt::format("is corrupt (wrong checksum of its PNG chunk {})", type));
             kept.insert(kept.end(), bytes.begin() + long(at), bytes.begin() + long(at + 12 + size));
         }
-        if (type == "IHDR") check_png_header(file, at + 8, size, limits), needs_palette = bytes[at + 17] == 3;
+        if (type == "IHDR")
+            check_png_header(file, at + 8, size, limits), needs_palette = bytes[at + 17] == 3;
         has_palette |= type == "PLTE";
         has_pixels |= type == "IDAT";
         if (type == "IEND") break;
         at += 12 + size;
     }
-    if (!has_pixels || (needs_palette && !has_palette)) fail(where, "is corrupt (no pixels or no palette)");
+    if (!has_pixels || (needs_palette && !has_palette))
+        fail(where, "is corrupt (no pixels or no palette)");
     return kept;
 }
 
-// Tables, frame and scans, JFIF and Adobe markers (they tell the colour space); no profiles, no tags, no comments.
-// Garbage between markers is skipped, as decoders do.
+// Tables, frame and scans, JFIF and Adobe markers (they tell the colour space); no profiles, no
+// tags, no comments. Garbage between markers is skipped, as decoders do.
 Bytes guard_jpeg(const Bytes& bytes, const std::string& where, const ReadLimits& limits)
 {
     constexpr int MOST_SCANS = 200;  // encoders make ten; thousands are an attack on time
@@ -116,15 +126,18 @@ Bytes guard_jpeg(const Bytes& bytes, const std::string& where, const ReadLimits&
         if (kind == 0 || kind == 1 || (kind >= 0xd0 && kind <= 0xd8)) continue;
         const size_t size = file.number(at, 2);
         const size_t end = at + size;
-        if (size < 2 || end > bytes.size()) fail(where, "is cut short or corrupt (JPEG marker beyond the end)");
-        const bool frame = kind >= 0xc0 && kind <= 0xcf && kind != 0xc4 && kind != 0xc8 && kind != 0xcc;
+        if (size < 2 || end > bytes.size())
+            fail(where, "is cut short or corrupt (JPEG marker beyond the end)");
+        const bool frame =
+            kind >= 0xc0 && kind <= 0xcf && kind != 0xc4 && kind != 0xc8 && kind != 0xcc;
         if (frame) check_pixels(where, file.number(at + 5, 2), file.number(at + 3, 2), limits);
         const bool metadata = kind == 0xfe || (kind >= 0xe1 && kind <= 0xef && kind != 0xee);
         size_t keep_until = metadata ? code : end;
         if (kind == 0xda) {
             if (++scans > MOST_SCANS) fail(where, "is a JPEG of too many scans");
-            while (keep_until + 1 < bytes.size() && (bytes[keep_until] != 0xff || bytes[keep_until + 1] == 0 ||
-                                                     (bytes[keep_until + 1] & 0xf8) == 0xd0))
+            while (keep_until + 1 < bytes.size() &&
+                   (bytes[keep_until] != 0xff || bytes[keep_until + 1] == 0 ||
+                    (bytes[keep_until + 1] & 0xf8) == 0xd0))
                 ++keep_until;
             if (keep_until + 1 == bytes.size()) keep_until = bytes.size();
         }
@@ -151,8 +164,10 @@ Bytes guard_tiff(Bytes bytes, const std::string& where)
     for (uint64_t k = 0; k < count; ++k) {
         const size_t at = first + k * entry;
         const uint64_t tag = file.number(at, 2);
-        static const int unwanted[] = {700, 33723, 34377, 34665, 34675, 34853};  // XMP, IPTC, Photoshop, Exif, ICC, GPS
-        if (std::find(std::begin(unwanted), std::end(unwanted), int(tag)) == std::end(unwanted)) continue;
+        static const int unwanted[] = {700,   33723, 34377, 34665,
+                                       34675, 34853};  // XMP, IPTC, Photoshop, Exif, ICC, GPS
+        if (std::find(std::begin(unwanted), std::end(unwanted), int(tag)) == std::end(unwanted))
+            continue;
         bytes[at + (big_endian ? 1 : 0)] += 1;
     }
     return bytes;
@@ -161,18 +176,22 @@ Bytes guard_tiff(Bytes bytes, const std::string& where)
 const char* reader_of(const Bytes& start)
 {
     const auto begins = [&](std::string_view magic) {
-        return start.size() >= magic.size() && std::memcmp(start.data(), magic.data(), magic.size()) == 0;
+        return start.size() >= magic.size() &&
+               std::memcmp(start.data(), magic.data(), magic.size()) == 0;
     };
     using namespace std::string_view_literals;
     if (begins("\x76\x2f\x31\x01"sv)) return "openexr";
     if (begins("\x89PNG\r\n\x1a\n"sv)) return "png";
     if (begins("\xff\xd8\xff"sv)) return "jpeg";
-    if (begins("II\x2a\0"sv) || begins("MM\0\x2a"sv) || begins("II\x2b\0"sv) || begins("MM\0\x2b"sv)) return "tiff";
+    if (begins("II\x2a\0"sv) || begins("MM\0\x2a"sv) || begins("II\x2b\0"sv) ||
+        begins("MM\0\x2b"sv))
+        return "tiff";
     if (begins("#?RADIANCE"sv) || begins("#?RGBE"sv)) return "hdr";
     return nullptr;
 }
 
-Bytes guard_bytes(const std::string& reader, Bytes bytes, const std::string& where, const ReadLimits& limits)
+Bytes guard_bytes(const std::string& reader, Bytes bytes, const std::string& where,
+                  const ReadLimits& limits)
 {
     if (reader == "png") return guard_png(bytes, where, limits);
     if (reader == "jpeg") return guard_jpeg(bytes, where, limits);
@@ -182,9 +201,11 @@ Bytes guard_bytes(const std::string& reader, Bytes bytes, const std::string& whe
 
 const char* known_reader(const Bytes& start, const std::string& where)
 {
-    if (start.empty()) fail(where, "is empty");
+    if (start.empty()) fail(where, "is an empty file");
     const char* reader = reader_of(start);
-    if (!reader) fail(where, "is no EXR, HDR, PNG, JPEG or TIFF picture, or is corrupt from its first bytes");
+    if (!reader)
+        fail(where,
+             "is no EXR, HDR, PNG, JPEG or TIFF picture, or is corrupt from its first bytes");
     return reader;
 }
 
@@ -198,7 +219,7 @@ Bytes read_bytes(const std::string& path, uint64_t most)
     return bytes;
 }
 
-} // namespace
+}  // namespace
 
 GuardedFile guard_picture(const std::string& path, const ReadLimits& limits)
 {
@@ -211,10 +232,11 @@ GuardedFile guard_picture(const std::string& path, const ReadLimits& limits)
     return {reader, guard_bytes(name, read_bytes(path, ~uint64_t(0)), path, limits)};
 }
 
-GuardedFile guard_picture(std::vector<unsigned char> bytes, const std::string& where, const ReadLimits& limits)
+GuardedFile guard_picture(std::vector<unsigned char> bytes, const std::string& where,
+                          const ReadLimits& limits)
 {
     const char* reader = known_reader(bytes, where);
     return {reader, guard_bytes(reader, std::move(bytes), where, limits)};
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

@@ -28,7 +28,8 @@ using OIIO::TypeDesc;
 // Libraries report over several lines and repeat the path; ours is one line that starts with it.
 std::string reason(const std::string& path, std::string text)
 {
-    for (size_t at; (at = text.find(path)) != std::string::npos;) text.replace(at, path.size(), "it");
+    for (size_t at; (at = text.find(path)) != std::string::npos;)
+        text.replace(at, path.size(), "it");
     for (char& c : text)
         if (c < ' ' || c > '~') c = ' ';
     while (!text.empty() && text.back() == ' ') text.pop_back();
@@ -41,27 +42,32 @@ struct Window {
     int width = 0, height = 0;  // of the picture
 };
 
-// Checked before anything is allocated. No encoder squeezes more than some thousand bytes into one, so a small file
-// with a huge header is refused whatever the limits say.
+// Checked before anything is allocated. No encoder squeezes more than some thousand bytes into one,
+// so a small file with a huge header is refused whatever the limits say.
 void check_size(const std::string& path, const ImageSpec& spec, const ReadLimits& limits)
 {
-    if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 || spec.nchannels < 1)
-        fail(path, fmt::format("its header gives {} x {} pixels of {} channels; the file is corrupt", spec.width,
-                               spec.height, spec.nchannels));
+    if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 ||
+        spec.nchannels < 1)
+        fail(path,
+             fmt::format("its header gives {} x {} pixels of {} channels; the file is corrupt",
+                         spec.width, spec.height, spec.nchannels));
     const uint64_t stored = uint64_t(spec.width) * uint64_t(spec.height);
     const uint64_t shown = uint64_t(spec.full_width) * uint64_t(spec.full_height);
     const uint64_t pixels = std::max(stored, shown);
     if (pixels > limits.pixels || pixels > limits.values / uint64_t(spec.nchannels))
-        fail(path, fmt::format("{} x {} pixels of {} channels are more than the {} pixels or {} values allowed",
-                               std::max(spec.width, spec.full_width), std::max(spec.height, spec.full_height),
-                               spec.nchannels, limits.pixels, limits.values));
+        fail(path,
+             fmt::format(
+                 "{} x {} pixels of {} channels are more than the {} pixels or {} values allowed",
+                 std::max(spec.width, spec.full_width), std::max(spec.height, spec.full_height),
+                 spec.nchannels, limits.pixels, limits.values));
     constexpr uint64_t LARGEST_RATIO = 20000, ALWAYS_ALLOWED = 64u << 20;
     const uint64_t bytes = stored * spec.pixel_bytes(true);
     std::error_code error;
     const uint64_t file_bytes = fs::file_size(path, error);
     if (bytes > ALWAYS_ALLOWED && !error && bytes / LARGEST_RATIO > file_bytes)
-        fail(path, fmt::format("its header announces {} x {} pixels, but the file has only {} bytes", spec.width,
-                               spec.height, file_bytes));
+        fail(path,
+             fmt::format("its header announces {} x {} pixels, but the file has only {} bytes",
+                         spec.width, spec.height, file_bytes));
     if (spec.deep) fail(path, "holds deep pixels, which are not supported; flatten it first");
     if (spec.depth > 1) fail(path, "holds a volume, not a picture");
 }
@@ -76,14 +82,16 @@ struct ChannelName {
     std::string channel;
 };
 
-// "x.y.R" is channel R of layer "x.y". In a further part, which has a name of its own, plain channels belong to it.
+// "x.y.R" is channel R of layer "x.y". In a further part, which has a name of its own, plain
+// channels belong to it.
 ChannelName split_name(const std::string& name, const std::string& part)
 {
     const size_t dot = name.rfind('.');
     if (dot != std::string::npos) return {name.substr(0, dot), name.substr(dot + 1)};
     if (!part.empty()) return {part, name};
     static const char* const beauty[] = {"R", "G", "B", "A", "Y", "I"};
-    if (std::find(std::begin(beauty), std::end(beauty), name) != std::end(beauty)) return {"", name};
+    if (std::find(std::begin(beauty), std::end(beauty), name) != std::end(beauty))
+        return {"", name};
     if (name == "Z") return {"depth", name};
     return {name, ""};
 }
@@ -100,7 +108,8 @@ struct Slot {
 };
 
 // One layer for each name and kind of number, in the order of the file.
-std::vector<Slot> make_layers(const ImageSpec& spec, const std::string& part, std::vector<Layer>& layers)
+std::vector<Slot> make_layers(const ImageSpec& spec, const std::string& part,
+                              std::vector<Layer>& layers)
 {
     std::vector<Slot> slots;
     std::vector<bool> whole;
@@ -108,7 +117,9 @@ std::vector<Slot> make_layers(const ImageSpec& spec, const std::string& part, st
     for (int c = 0; c < spec.nchannels; ++c) {
         const ChannelName name = split_name(spec.channel_name(c), part);
         size_t k = first;
-        while (k < layers.size() && (layers[k].name != name.layer || whole[k - first] != is_whole_number(spec, c))) ++k;
+        while (k < layers.size() &&
+               (layers[k].name != name.layer || whole[k - first] != is_whole_number(spec, c)))
+            ++k;
         if (k == layers.size()) {
             layers.push_back({name.layer, {}, {}, {}});
             whole.push_back(is_whole_number(spec, c));
@@ -122,12 +133,14 @@ std::vector<Slot> make_layers(const ImageSpec& spec, const std::string& part, st
 void allocate(Layer& layer, bool whole, const Window& window)
 {
     const size_t count = size_t(window.width) * window.height * layer.channels.size();
-    if (whole) layer.ids.assign(count, 0);
-    else layer.pixels.assign(count, 0.0f);
+    if (whole)
+        layer.ids.assign(count, 0);
+    else
+        layer.pixels.assign(count, 0.0f);
 }
 
-// Reads one stored row or band of rows: floats for everything, and the exact value for unsigned channels, which a
-// conversion to float would scale to 0..1.
+// Reads one stored row or band of rows: floats for everything, and the exact value for unsigned
+// channels, which a conversion to float would scale to 0..1.
 class BandReader {
 public:
     BandReader(const std::string& path, ImageInput& input, int part, const ImageSpec& spec)
@@ -172,10 +185,11 @@ private:
     void read_as(int begin, int end, TypeDesc type, void* out)
     {
         const int y0 = spec_.y + begin, y1 = spec_.y + end;
-        const bool good = spec_.tile_width
-                              ? input_.read_tiles(part_, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z,
-                                                  spec_.z + 1, 0, spec_.nchannels, type, out)
-                              : input_.read_scanlines(part_, 0, y0, y1, spec_.z, 0, spec_.nchannels, type, out);
+        const bool good =
+            spec_.tile_width
+                ? input_.read_tiles(part_, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z,
+                                    spec_.z + 1, 0, spec_.nchannels, type, out)
+                : input_.read_scanlines(part_, 0, y0, y1, spec_.z, 0, spec_.nchannels, type, out);
         if (!good) fail(path_, "corrupt or cut short (" + reason(path_, input_.geterror()) + ")");
     }
 
@@ -188,13 +202,16 @@ private:
     std::vector<char> native_;
 };
 
-void read_part(const std::string& path, ImageInput& input, int part, const ImageSpec& spec, Picture& picture)
+void read_part(const std::string& path, ImageInput& input, int part, const ImageSpec& spec,
+               Picture& picture)
 {
     const Window window = window_of(spec);
-    const std::string part_name = part > 0 ? spec.get_string_attribute("oiio:subimagename").c_str() : std::string();
+    const std::string part_name =
+        part > 0 ? spec.get_string_attribute("oiio:subimagename").c_str() : std::string();
     const std::vector<Slot> slots = make_layers(spec, part_name, picture.layers);
     for (int c = 0; c < spec.nchannels; ++c)
-        if (slots[c].channel == 0) allocate(picture.layers[slots[c].layer], is_whole_number(spec, c), window);
+        if (slots[c].channel == 0)
+            allocate(picture.layers[slots[c].layer], is_whole_number(spec, c), window);
 
     BandReader band(path, input, part, spec);
     const int first_column = std::max(0, -window.x);
@@ -209,11 +226,14 @@ void read_part(const std::string& path, ImageInput& input, int part, const Image
                 Layer& layer = picture.layers[slots[c].layer];
                 const size_t stride = layer.channels.size();
                 const size_t from = size_t(row - begin) * spec.width;
-                const int64_t to = (y * window.width + window.x) * int64_t(stride) + int64_t(slots[c].channel);
+                const int64_t to =
+                    (y * window.width + window.x) * int64_t(stride) + int64_t(slots[c].channel);
                 for (int x = first_column; x < last_column; ++x) {
                     const size_t at = size_t(to + int64_t(x) * int64_t(stride));
-                    if (is_whole_number(spec, c)) layer.ids[at] = band.whole(from + x, c);
-                    else layer.pixels[at] = band.number(from + x, c);
+                    if (is_whole_number(spec, c))
+                        layer.ids[at] = band.whole(from + x, c);
+                    else
+                        layer.pixels[at] = band.number(from + x, c);
                 }
             }
         }
@@ -244,9 +264,11 @@ OpenPicture open(const std::string& path, const ReadLimits& limits)
 {
     OpenPicture open{guard_picture(path, limits), nullptr, nullptr};
     open.input = ImageInput::create(open.file.reader);
-    if (!open.input) fail(path, fmt::format("this OpenImageIO has no reader for {} files", open.file.reader));
+    if (!open.input)
+        fail(path, fmt::format("this OpenImageIO has no reader for {} files", open.file.reader));
     if (!open.file.bytes.empty()) {
-        open.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(open.file.bytes.data(), open.file.bytes.size());
+        open.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(open.file.bytes.data(),
+                                                                      open.file.bytes.size());
         open.input->set_ioproxy(open.memory.get());
     }
     ImageSpec spec, wishes;
@@ -262,12 +284,14 @@ Picture read_all(const std::string& path, const ReadLimits& limits)
     ImageInput* const input = opened.input.get();
     Picture picture;
     const ImageSpec first = input->spec();
-    // Only an EXR file's further parts are layers of the same picture; elsewhere they are frames, pages and thumbnails.
+    // Only an EXR file's further parts are layers of the same picture; elsewhere they are frames,
+    // pages and thumbnails.
     const bool parts = std::strcmp(input->format_name(), "openexr") == 0;
     for (int part = 0; part == 0 || (parts && input->seek_subimage(part, 0)); ++part) {
         const ImageSpec spec = input->spec(part);
         if (spec.undefined()) fail(path, "corrupt (" + reason(path, input->geterror()) + ")");
-        if (part > 0 && (spec.full_width != first.full_width || spec.full_height != first.full_height || spec.deep))
+        if (part > 0 && (spec.full_width != first.full_width ||
+                         spec.full_height != first.full_height || spec.deep))
             continue;
         check_size(path, spec, limits);
         read_part(path, *input, part, spec, picture);
@@ -280,7 +304,7 @@ Picture read_all(const std::string& path, const ReadLimits& limits)
     return picture;
 }
 
-} // namespace
+}  // namespace
 
 Picture read_picture(const std::string& path, const ReadLimits& limits)
 {
@@ -293,4 +317,4 @@ Picture read_picture(const std::string& path, const ReadLimits& limits)
     }
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

@@ -19,8 +19,9 @@ float srgb_decode(float encoded)
     return std::copysign(y, encoded);
 }
 
-// Khronos Group, "PBR Neutral Tone Mapper" (2024): takes off the 4 % that a dielectric's Fresnel reflection adds, leaves
-// what is then below 0.76 alone, compresses the rest and lets it fade to white.
+// Khronos Group, "PBR Neutral Tone Mapper" (2024): takes off the 4 % that a dielectric's Fresnel
+// reflection adds, leaves what is then below 0.76 alone, compresses the rest and lets it fade to
+// white.
 Rgb view_neutral(Rgb color)
 {
     const float start = 0.8f - 0.04f;
@@ -46,8 +47,9 @@ static Rgb transform(const float (&m)[3][3], Rgb v)
     return out;
 }
 
-// Stephen Hill's fit of the ACES reference rendering transform and sRGB output transform (first published with "Baking
-// Lab", MJP and others, 2016). The matrices go from Rec.709 to the space the curve works in, and back.
+// Stephen Hill's fit of the ACES reference rendering transform and sRGB output transform (first
+// published with "Baking Lab", MJP and others, 2016). The matrices go from Rec.709 to the space the
+// curve works in, and back.
 Rgb view_filmic(Rgb color)
 {
     static const float in[3][3] = {{0.59719f, 0.35458f, 0.04823f},
@@ -78,4 +80,4 @@ Rgb display_value(Rgb radiance, float exposure, View view)
     return radiance;
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

@@ -43,7 +43,9 @@ std::string encoder_of(const std::string& path)
                    [](unsigned char c) { return char(std::tolower(c)); });
     for (const Format& format : FORMATS)
         if (extension == format.extension) return format.encoder;
-    fail(path, fmt::format("unknown picture format '{}'; use .exr, .png, .jpg, .jpeg, .tif or .tiff", extension));
+    fail(path,
+         fmt::format("unknown picture format '{}'; use .exr, .png, .jpg, .jpeg, .tif or .tiff",
+                     extension));
 }
 
 fs::path temporary_beside(const fs::path& path)
@@ -62,8 +64,10 @@ public:
         if (fs::is_directory(path_, ignored)) fail(path, "is a folder; name a file");
         file_ = std::fopen(name_.c_str(), "wbx");
         if (!file_)
-            fail(path, fmt::format("cannot be written ({}); check that its folder exists and is yours to write",
-                                   std::strerror(errno)));
+            fail(path,
+                 fmt::format(
+                     "cannot be written ({}); check that its folder exists and is yours to write",
+                     std::strerror(errno)));
     }
     ~TemporaryFile()
     {
@@ -75,10 +79,12 @@ public:
 
     void write(std::string_view bytes)
     {
-        const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size() && std::fflush(file_) == 0;
+        const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size() &&
+                             std::fflush(file_) == 0;
         const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
         if (!written || !closed)
-            fail(path_, fmt::format("could not be written whole ({}); nothing was replaced", std::strerror(errno)));
+            fail(path_, fmt::format("could not be written whole ({}); nothing was replaced",
+                                    std::strerror(errno)));
     }
 
     void put_in_place()
@@ -106,7 +112,8 @@ std::string channel_name(const Layer& layer, const std::string& channel)
 void check_layers(const std::string& path, const Picture& picture)
 {
     if (picture.width < 1 || picture.height < 1)
-        fail(path, fmt::format("a picture of {} x {} pixels cannot be written", picture.width, picture.height));
+        fail(path, fmt::format("a picture of {} x {} pixels cannot be written", picture.width,
+                               picture.height));
     for (const Layer& layer : picture.layers) {
         const size_t expected = size_t(picture.width) * picture.height * layer.channels.size();
         if (layer.pixels.size() + layer.ids.size() != expected || expected == 0)
@@ -136,11 +143,13 @@ OIIO::ImageSpec exr_spec(const Picture& picture, const WriteOptions& options)
         }
     }
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // otherwise OpenImageIO adds the present second
     for (const auto& [name, value] : picture.metadata) spec.attribute(name, value);
     return spec;
 }
 
-// One row of the file's own layout: the values of a pixel one after the other, each in its channel's type.
+// One row of the file's own layout: the values of a pixel one after the other, each in its
+// channel's type.
 void pack_exr_row(const Picture& picture, const WriteOptions& options, int y, char* out)
 {
     for (int x = 0; x < picture.width; ++x) {
@@ -160,20 +169,27 @@ void pack_exr_row(const Picture& picture, const WriteOptions& options, int y, ch
     }
 }
 
-OIIO::ImageSpec display_spec(const Picture& picture, const WriteOptions& options, const std::string& encoder,
-                             bool alpha)
+OIIO::ImageSpec display_spec(const Picture& picture, const WriteOptions& options,
+                             const std::string& encoder, bool alpha)
 {
     const bool sixteen = options.sixteen_bit && encoder != "jpeg";
-    OIIO::ImageSpec spec(picture.width, picture.height, alpha ? 4 : 3, sixteen ? TypeDesc::UINT16 : TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
+    OIIO::ImageSpec spec(picture.width, picture.height, alpha ? 4 : 3,
+                         sixteen ? TypeDesc::UINT16 : TypeDesc::UINT8);
     spec.attribute("oiio:UnassociatedAlpha", 1);
+    // In TIFF it would become an Exif directory, for which libtiff must read back what it wrote;
+    // memory here is write-only.
+    if (encoder != "tiff") spec.attribute("oiio:ColorSpace", "sRGB");
+    // OpenImageIO adds the present second to a TIFF without a date; one of another type is not
+    // written at all.
+    if (encoder == "tiff") spec.attribute("DateTime", 0);
     if (encoder == "jpeg") spec.attribute("Compression", "jpeg:95");
     if (encoder == "jpeg") spec.attribute("jpeg:subsampling", "4:4:4");
     if (encoder == "tiff") spec.attribute("compression", "zip");
     return spec;
 }
 
-// Rows of sRGB values as whole numbers. Alpha is linear coverage: colours are divided by it before the view is applied.
+// Rows of sRGB values as whole numbers. Alpha is linear coverage: colours are divided by it before
+// the view is applied.
 void pack_display_row(const Picture& picture, const Layer& layer, const WriteOptions& options,
                       const OIIO::ImageSpec& spec, int y, char* out)
 {
@@ -183,21 +199,27 @@ void pack_display_row(const Picture& picture, const Layer& layer, const WriteOpt
         const float* pixel = &layer.pixels[(size_t(y) * picture.width + x) * count];
         const float coverage = spec.nchannels == 4 ? std::clamp(pixel[3], 0.0f, 1.0f) : 1.0f;
         const float scale = coverage > 0 ? 1 / coverage : 0.0f;
-        Rgb color = {pixel[0] * scale, pixel[count > 2 ? 1 : 0] * scale, pixel[count > 2 ? 2 : 0] * scale};
-        if (picture.encoding == Encoding::Linear) color = display_value(color, options.exposure, options.view);
+        Rgb color = {pixel[0] * scale, pixel[count > 2 ? 1 : 0] * scale,
+                     pixel[count > 2 ? 2 : 0] * scale};
+        if (picture.encoding == Encoding::Linear)
+            color = display_value(color, options.exposure, options.view);
         const float values[4] = {color[0], color[1], color[2], coverage};
         for (int c = 0; c < spec.nchannels; ++c) {
             const float value = values[c] > 0 ? std::min(values[c], 1.0f) : 0.0f;  // NaN becomes 0
             const auto rounded = uint16_t(value * top + 0.5f);
-            if (spec.format == TypeDesc::UINT16) std::memcpy(out, &rounded, 2), out += 2;
-            else *out++ = char(rounded);
+            if (spec.format == TypeDesc::UINT16)
+                std::memcpy(out, &rounded, 2), out += 2;
+            else
+                *out++ = char(rounded);
         }
     }
 }
 
-// Encodes in memory, so that a full disk shows when the bytes are written, whatever the encoder makes of it.
+// Encodes in memory, so that a full disk shows when the bytes are written, whatever the encoder
+// makes of it.
 template<class PackRow>
-std::vector<unsigned char> encode(const std::string& path, const OIIO::ImageSpec& spec, PackRow&& pack_row)
+std::vector<unsigned char> encode(const std::string& path, const OIIO::ImageSpec& spec,
+                                  PackRow&& pack_row)
 {
     const std::string encoder = encoder_of(path);
     auto output = OIIO::ImageOutput::create(encoder);
@@ -212,7 +234,8 @@ std::vector<unsigned char> encode(const std::string& path, const OIIO::ImageSpec
     for (int y = 0; y < spec.height; y += BAND) {
         const int rows = std::min(BAND, spec.height - y);
         for (int r = 0; r < rows; ++r) pack_row(y + r, band.data() + r * row_bytes);
-        const TypeDesc type = spec.channelformats.empty() ? spec.format : TypeDesc(TypeDesc::UNKNOWN);
+        const TypeDesc type =
+            spec.channelformats.empty() ? spec.format : TypeDesc(TypeDesc::UNKNOWN);
         if (!output->write_scanlines(y, y + rows, 0, type, band.data()))
             fail(path, "cannot be encoded (" + output->geterror() + ")");
     }
@@ -220,7 +243,8 @@ std::vector<unsigned char> encode(const std::string& path, const OIIO::ImageSpec
     return std::move(memory.buffer());
 }
 
-std::vector<unsigned char> encode_exr(const std::string& path, const Picture& picture, const WriteOptions& options)
+std::vector<unsigned char> encode_exr(const std::string& path, const Picture& picture,
+                                      const WriteOptions& options)
 {
     return encode(path, exr_spec(picture, options),
                   [&](int y, char* out) { pack_exr_row(picture, options, y, out); });
@@ -230,20 +254,24 @@ std::vector<unsigned char> encode_display(const std::string& path, const Picture
                                           const WriteOptions& options)
 {
     const Layer& layer = beauty_of(picture);
-    if (layer.pixels.empty()) fail(path, "whole-number layers have no colours to show; write them to .exr");
+    if (layer.pixels.empty())
+        fail(path, "whole-number layers have no colours to show; write them to .exr");
     const std::string encoder = encoder_of(path);
     const bool alpha = options.alpha && encoder != "jpeg" && layer.channels.size() >= 4;
     const OIIO::ImageSpec spec = display_spec(picture, options, encoder, alpha);
-    return encode(path, spec, [&](int y, char* out) { pack_display_row(picture, layer, options, spec, y, out); });
+    return encode(path, spec, [&](int y, char* out) {
+        pack_display_row(picture, layer, options, spec, y, out);
+    });
 }
 
-} // namespace
+}  // namespace
 
 void write_picture(const std::string& path, const Picture& picture, const WriteOptions& options)
 {
     check_layers(path, picture);
     const bool exr = encoder_of(path) == "openexr";
-    const auto bytes = exr ? encode_exr(path, picture, options) : encode_display(path, picture, options);
+    const auto bytes =
+        exr ? encode_exr(path, picture, options) : encode_display(path, picture, options);
     write_file_whole(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
@@ -260,4 +288,4 @@ void check_writable(const std::string& path)
     TemporaryFile probe(path);
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

@@ -57,8 +57,12 @@ TEST_F(Compare, ExitCodesFollowTheLimits)
     EXPECT_EQ(run({a, b}).code, 0);
     EXPECT_EQ(run({a, b, "--metric", "rmse", "--max", "0.11"}).code, 0);
     EXPECT_EQ(run({a, b, "--metric", "rmse", "--max", "0.09"}).code, 1);
-    EXPECT_EQ(run({a, b, "--metric", "rmse", "--max", "0.11", "--metric", "flip", "--max", "0.0001"}).code, 1);
-    EXPECT_EQ(run({b, a, "--metric", "bias", "--max", "0.09"}).code, 1) << "a negative bias counts too";
+    EXPECT_EQ(
+        run({a, b, "--metric", "rmse", "--max", "0.11", "--metric", "flip", "--max", "0.0001"})
+            .code,
+        1);
+    EXPECT_EQ(run({b, a, "--metric", "bias", "--max", "0.09"}).code, 1)
+        << "a negative bias counts too";
     EXPECT_EQ(run({a, a, "--metric", "max", "--max", "0"}).code, 0);
 }
 
@@ -100,6 +104,8 @@ TEST_F(Compare, JsonHoldsEveryMetric)
     EXPECT_EQ(report["flip"]["exposures"].size(), 3u);
     EXPECT_EQ(report["within"], true);
 
+    EXPECT_EQ(json::parse(run({"--json", a, b}).out)["rmse"], report["rmse"]) << "also in front";
+
     const Ran some = run({a, b, "--metric", "mean", "--max", "0.01", "--json", folder / "r.json"});
     EXPECT_EQ(some.code, 1);
     EXPECT_NE(some.out.find("ABOVE"), std::string::npos) << "text when the JSON goes to a file";
@@ -134,10 +140,12 @@ TEST_F(Compare, HelpSaysEverything)
     CLI::App app;
     CompareOptions options;
     const std::string help = add_compare_command(app, options)->help();
-    for (const char* word : {"--metric", "--max", "--ppd", "--json", "--manifest", "--junit", "--layer", "--output",
-                             "--backends", "flip.mean", "Exit code", "heat_map"})
+    for (const char* word :
+         {"--metric", "--max", "--ppd", "--json", "--manifest", "--junit", "--layer", "--output",
+          "--backends", "flip.mean", "Exit code", "heat_map"})
         EXPECT_NE(help.find(word), std::string::npos) << word;
-    for (const char* metric : {"rmse", "relmse", "bias", "yee"}) EXPECT_NE(help.find(metric), std::string::npos) << metric;
+    for (const char* metric : {"rmse", "relmse", "bias", "yee"})
+        EXPECT_NE(help.find(metric), std::string::npos) << metric;
 }
 
 TEST_F(Compare, ManifestRunsAllAndWritesJunit)
@@ -159,16 +167,18 @@ TEST_F(Compare, ManifestRunsAllAndWritesJunit)
         {"name": "fine", "reference": "a.exr", "test": "b.exr", "limits": {"rmse": 1}}])");
     const Ran missing = run({"--manifest", folder / "list.json"});
     EXPECT_EQ(missing.code, 2);
-    EXPECT_NE(missing.out.find("errors=\"1\""), std::string::npos) << "the XML goes to standard output";
+    EXPECT_NE(missing.out.find("errors=\"1\""), std::string::npos)
+        << "the XML goes to standard output";
     EXPECT_NE(missing.out.find("name=\"fine\""), std::string::npos) << "the others still ran";
     EXPECT_EQ(std::count(missing.err.begin(), missing.err.end(), '\n'), 1);
 }
 
 TEST_F(Compare, ManifestMistakesAreNamed)
 {
-    for (const char* text : {"{", "{}", "[1]", R"([{"reference": 1}])", R"([{"tset": "b.exr"}])",
-                             R"([{"reference": "a.exr", "test": "b.exr", "limits": {"rmse": "x"}}])",
-                             R"([{"reference": "a.exr", "test": "b.exr", "limits": []}])"}) {
+    for (const char* text :
+         {"{", "{}", "[1]", R"([{"reference": 1}])", R"([{"tset": "b.exr"}])",
+          R"([{"reference": "a.exr", "test": "b.exr", "limits": {"rmse": "x"}}])",
+          R"([{"reference": "a.exr", "test": "b.exr", "limits": []}])"}) {
         put_bytes(folder / "list.json", text);
         const Ran ran = run({"--manifest", folder / "list.json"});
         EXPECT_EQ(ran.code, 2) << text;

@@ -65,7 +65,8 @@ TEST(Flip, IsZeroForEqualPicturesAndSymmetricForDisplayOnes)
     EXPECT_EQ(ab.map, flip_ldr(b, a, 40, 30, FLIP_PIXELS_PER_DEGREE).map);
 }
 
-// Turning the picture by a quarter must turn the map: no filter prefers a direction, and no band edge shows.
+// Turning the picture by a quarter must turn the map: no filter prefers a direction, and no band
+// edge shows.
 TEST(Flip, TurnsWithThePicture)
 {
     const int width = 37, height = 150;
@@ -74,14 +75,16 @@ TEST(Flip, TurnsWithThePicture)
         std::vector<float> out(v.size());
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
-                for (int c = 0; c < 3; ++c) out[3 * (size_t(x) * height + y) + c] = v[3 * (size_t(y) * width + x) + c];
+                for (int c = 0; c < 3; ++c)
+                    out[3 * (size_t(x) * height + y) + c] = v[3 * (size_t(y) * width + x) + c];
         return out;
     };
     const FlipResult upright = flip_ldr(a, b, width, height, 30);
     const FlipResult lying = flip_ldr(turned(a), turned(b), height, width, 30);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            ASSERT_NEAR(upright.map[size_t(y) * width + x], lying.map[size_t(x) * height + y], 2e-4) << x << "," << y;
+            ASSERT_NEAR(upright.map[size_t(y) * width + x], lying.map[size_t(x) * height + y], 2e-4)
+                << x << "," << y;
 }
 
 TEST(Flip, HdrDoesNotDependOnTheUnitOfRadiance)
@@ -90,7 +93,8 @@ TEST(Flip, HdrDoesNotDependOnTheUnitOfRadiance)
     auto a_dim = a, b_dim = b;
     for (float& v : a_dim) v /= 1024;
     for (float& v : b_dim) v /= 1024;
-    const FlipResult bright = flip_hdr(a, b, 32, 32, 67.02), dim = flip_hdr(a_dim, b_dim, 32, 32, 67.02);
+    const FlipResult bright = flip_hdr(a, b, 32, 32, 67.02),
+                     dim = flip_hdr(a_dim, b_dim, 32, 32, 67.02);
     EXPECT_NEAR(bright.mean, dim.mean, 1e-5);
     EXPECT_NEAR(dim.start_exposure - bright.start_exposure, 10, 1e-4);
 }

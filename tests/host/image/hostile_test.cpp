@@ -1,4 +1,5 @@
-// Files from strangers: an error of one line or a picture, never a crash, a hang or a huge allocation.
+// Files from strangers: an error of one line or a picture, never a crash, a hang or a huge
+// allocation.
 #include "host/image/image.hpp"
 #include "tests/host/image/scratch_folder.hpp"
 
@@ -17,7 +18,8 @@ static std::string outcome(const std::string& path, const ReadLimits& limits)
         const Picture picture = read_picture(path, limits);
         const size_t pixels = size_t(picture.width) * picture.height;
         for (const Layer& layer : picture.layers)
-            EXPECT_EQ(layer.pixels.size() + layer.ids.size(), pixels * layer.channels.size()) << path;
+            EXPECT_EQ(layer.pixels.size() + layer.ids.size(), pixels * layer.channels.size())
+                << path;
         return {};
     } catch (const std::runtime_error& error) {
         const std::string message = error.what();
@@ -30,9 +32,9 @@ static std::string outcome(const std::string& path, const ReadLimits& limits)
 
 struct Expected {
     const char* folder;
-    int at_least;     // pictures in it
-    int unreadable;   // how many of them must be refused, at least
-    int readable;     // and how many must be read, at least
+    int at_least;    // pictures in it
+    int unreadable;  // how many of them must be refused, at least
+    int readable;    // and how many must be read, at least
 };
 
 class Hostile : public testing::TestWithParam<Expected> {};
@@ -44,7 +46,8 @@ TEST_P(Hostile, FolderIsSurvived)
     int read = 0, refused = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file()) continue;
-        const bool good = outcome(entry.path().string(), {.pixels = 1u << 26, .values = 1u << 26}).empty();
+        const bool good =
+            outcome(entry.path().string(), {.pixels = 1u << 24, .values = 1u << 24}).empty();
         ++(good ? read : refused);
     }
     EXPECT_GE(read + refused, GetParam().at_least);
@@ -52,20 +55,22 @@ TEST_P(Hostile, FolderIsSurvived)
     EXPECT_GE(read, GetParam().readable);
 }
 
-INSTANTIATE_TEST_SUITE_P(Folders, Hostile,
-                         testing::Values(Expected{"hostile-exr-open", 101, 100, 0}, Expected{"hostile-png", 14, 14, 0},
-                                         Expected{"hostile-jpeg-open", 33, 15, 5},
-                                         Expected{"hostile-oiio-open", 24, 10, 6}, Expected{"tex-PngSuite", 161, 0, 161},
-                                         Expected{"tex-exr-kinds", 7, 1, 6}, Expected{"tex-exr-latlong", 2, 0, 2}));
+INSTANTIATE_TEST_SUITE_P(
+    Folders, Hostile,
+    testing::Values(Expected{"hostile-exr-open", 101, 100, 0}, Expected{"hostile-png", 14, 14, 0},
+                    Expected{"hostile-jpeg-open", 33, 15, 5},
+                    Expected{"hostile-oiio-open", 24, 10, 6}, Expected{"tex-PngSuite", 161, 0, 161},
+                    Expected{"tex-exr-kinds", 7, 1, 6}, Expected{"tex-exr-latlong", 2, 0, 2}));
 
 TEST(Guard, NamesWhatIsWrong)
 {
     const ScratchFolder folder;
     const ReadLimits limits;
     EXPECT_NE(outcome(folder / "none.png", limits).find("no such file"), std::string::npos);
-    EXPECT_NE(outcome(fs::path(folder / "x").parent_path().string(), limits).find("is not a file"), std::string::npos);
+    EXPECT_NE(outcome(fs::path(folder / "x").parent_path().string(), limits).find("is not a file"),
+              std::string::npos);
     put_bytes(folder / "empty.png", "");
-    EXPECT_NE(outcome(folder / "empty.png", limits).find("is empty"), std::string::npos);
+    EXPECT_NE(outcome(folder / "empty.png", limits).find("empty file"), std::string::npos);
     put_bytes(folder / "text.exr", "hello, this is text");
     EXPECT_NE(outcome(folder / "text.exr", limits).find("is no EXR"), std::string::npos);
 }
@@ -85,7 +90,9 @@ TEST(Guard, ChecksTheSizeFromTheHeader)
     for (const char* name : {"x.exr", "x.png", "x.jpg", "x.tif"}) {
         write_picture(folder / name, grey(101, 100));
         EXPECT_EQ(outcome(folder / name, {.pixels = 10100}), "");
-        EXPECT_NE(outcome(folder / name, {.pixels = 10099}).find("101 x 100 pixels"), std::string::npos) << name;
+        EXPECT_NE(outcome(folder / name, {.pixels = 10099}).find("101 x 100 pixels"),
+                  std::string::npos)
+            << name;
     }
     EXPECT_NE(outcome(folder / "x.exr", {.values = 40000}).find("4 channels"), std::string::npos);
 }

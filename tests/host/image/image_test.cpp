@@ -19,7 +19,8 @@ static std::vector<float> noise(size_t count, unsigned seed)
 {
     std::mt19937 random(seed);
     std::vector<float> values(count);
-    for (float& v : values) v = std::exp2(float(random() % 2000) / 50 - 20) * (random() % 8 ? 1.0f : -1.0f);
+    for (float& v : values)
+        v = std::exp2(float(random() % 2000) / 50 - 20) * (random() % 8 ? 1.0f : -1.0f);
     return values;
 }
 
@@ -31,10 +32,10 @@ static Picture every_layer(int width, int height)
     picture.height = height;
     std::vector<uint32_t> ids(n);
     for (size_t i = 0; i < n; ++i) ids[i] = uint32_t(i * 2654435761u);
-    picture.layers = {beauty_layer(noise(4 * n, 1)),   albedo_layer(noise(3 * n, 2)),
-                      normal_layer(noise(3 * n, 3)),   depth_layer(noise(n, 4)),
-                      id_layer("object_id", ids),      id_layer("material_id", ids),
-                      id_layer("sample_count", ids),   standard_error_layer(noise(3 * n, 5))};
+    picture.layers = {beauty_layer(noise(4 * n, 1)), albedo_layer(noise(3 * n, 2)),
+                      normal_layer(noise(3 * n, 3)), depth_layer(noise(n, 4)),
+                      id_layer("object_id", ids),    id_layer("material_id", ids),
+                      id_layer("sample_count", ids), standard_error_layer(noise(3 * n, 5))};
     picture.metadata = {{"samples", "64"}, {"commandLine", "diptych render \"a b.glb\" -o x.exr"}};
     return picture;
 }
@@ -71,7 +72,8 @@ TEST(Exr, HalfKeepsElevenBitsAndTheRangeButNotDepthOrIds)
     EXPECT_EQ(beauty_of(read).pixels[1], -65504.0f);
     for (size_t i = 2; i < written.layers[0].pixels.size(); ++i) {
         const float v = written.layers[0].pixels[i];
-        if (std::abs(v) < 65504) ASSERT_NEAR(beauty_of(read).pixels[i], v, std::max(std::abs(v) * 0x1p-11f, 0x1p-25f));
+        if (std::abs(v) >= 65504) continue;
+        ASSERT_NEAR(beauty_of(read).pixels[i], v, std::max(std::abs(v) * 0x1p-11f, 0x1p-25f));
     }
     EXPECT_EQ(find_layer(read, "depth")->pixels, written.layers[3].pixels);
     EXPECT_EQ(find_layer(read, "object_id")->ids, written.layers[4].ids);
@@ -103,11 +105,13 @@ TEST(Files, AreTheSameBytesForTheSamePicture)
     const Picture picture = every_layer(33, 29);
     const char* const names[] = {"a.exr", "a.png", "a.jpg", "a.tif"};
     for (const char* name : names) write_picture(folder / name, picture);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // file formats love to note the second
+    std::this_thread::sleep_for(
+        std::chrono::milliseconds(1100));  // file formats love to note the second
     for (const char* name : names) {
-        const std::string other = "b" + fs::path(name).extension().string();
+        const std::string other =
+            fs::path(name).replace_filename("b").replace_extension(fs::path(name).extension());
         write_picture(folder / other, picture);
-        EXPECT_EQ(bytes_of(folder / name), bytes_of(folder / other)) << name;
+        EXPECT_TRUE(bytes_of(folder / name) == bytes_of(folder / other)) << name;
     }
 }
 
@@ -132,25 +136,26 @@ static std::vector<float> first_pixel(const std::string& path)
 TEST(Png, EncodesKnownValues)
 {
     const ScratchFolder folder;
-    // 0.214041 is the linear value of sRGB 0.5; 0.5 of 255 rounds to 128, of 65535 to 32768.
-    const Picture picture = flat({0.214041f, 1, -1, 1}, 3, 2);
+    // 0.2158605 is the linear value of sRGB 128/255.
+    const Picture picture = flat({0.2158605f, 1, -1, 1}, 3, 2);
     write_picture(folder / "eight.png", picture);
     EXPECT_EQ(first_pixel(folder / "eight.png"), (std::vector<float>{128 / 255.0f, 1, 0}));
     write_picture(folder / "sixteen.png", picture, {.sixteen_bit = true});
-    EXPECT_NEAR(first_pixel(folder / "sixteen.png")[0], 32768 / 65535.0f, 1.01 / 65535);
-    write_picture(folder / "brighter.tif", flat({0.05351025f, 0, 0, 1}, 3, 2), {.exposure = 2});
+    EXPECT_NEAR(first_pixel(folder / "sixteen.png")[0], 128 / 255.0f, 0.51 / 65535);
+    write_picture(folder / "brighter.tif", flat({0.053965125f, 0, 0, 1}, 3, 2), {.exposure = 2});
     EXPECT_EQ(first_pixel(folder / "brighter.tif")[0], 128 / 255.0f);
     EXPECT_EQ(read_picture(folder / "brighter.tif").encoding, Encoding::Display);
-    write_picture(folder / "grey.jpg", flat({0.214041f, 0.214041f, 0.214041f, 1}, 8, 8));
+    write_picture(folder / "grey.jpg", flat({0.2158605f, 0.2158605f, 0.2158605f, 1}, 8, 8));
     EXPECT_NEAR(first_pixel(folder / "grey.jpg")[1], 128 / 255.0f, 1.5 / 255);
 }
 
 TEST(Png, AlphaIsUnassociatedAndOnlyThereWhenAskedFor)
 {
     const ScratchFolder folder;
-    const Picture picture = flat({0.107021f, 0, 0, 0.5f}, 2, 2);  // half of sRGB 0.5
+    const Picture picture = flat({0.1079303f, 0, 0, 0.5f}, 2, 2);  // half of sRGB 128/255
     write_picture(folder / "alpha.png", picture, {.alpha = true});
-    EXPECT_EQ(first_pixel(folder / "alpha.png"), (std::vector<float>{128 / 255.0f, 0, 0, 128 / 255.0f}));
+    EXPECT_EQ(first_pixel(folder / "alpha.png"),
+              (std::vector<float>{128 / 255.0f, 0, 0, 128 / 255.0f}));
     write_picture(folder / "opaque.png", picture);
     EXPECT_EQ(first_pixel(folder / "opaque.png").size(), 3u);
     write_picture(folder / "nothing.png", flat({0, 0, 0, 0}, 2, 2), {.alpha = true});
@@ -177,12 +182,18 @@ static std::string message_of(const std::function<void()>& action)
 TEST(Writing, RefusesWhatCannotWorkBeforeAnythingIsRendered)
 {
     const ScratchFolder folder;
-    EXPECT_NE(message_of([&] { check_writable(folder / "x.bmp"); }).find(".exr, .png"), std::string::npos);
-    EXPECT_NE(message_of([&] { check_writable(folder / "x"); }).find("unknown picture format"), std::string::npos);
-    EXPECT_NE(message_of([&] { check_writable(folder / "no/such/x.png"); }).find("cannot be written"), std::string::npos);
-    EXPECT_NE(message_of([&] { check_writable("/proc/x.png"); }).find("/proc/x.png: "), std::string::npos);
+    EXPECT_NE(message_of([&] { check_writable(folder / "x.bmp"); }).find(".exr, .png"),
+              std::string::npos);
+    EXPECT_NE(message_of([&] { check_writable(folder / "x"); }).find("unknown picture format"),
+              std::string::npos);
+    EXPECT_NE(
+        message_of([&] { check_writable(folder / "no/such/x.png"); }).find("cannot be written"),
+        std::string::npos);
+    EXPECT_NE(message_of([&] { check_writable("/proc/x.png"); }).find("/proc/x.png: "),
+              std::string::npos);
     fs::create_directory(folder / "folder.png");
-    EXPECT_NE(message_of([&] { check_writable(folder / "folder.png"); }).find("is a folder"), std::string::npos);
+    EXPECT_NE(message_of([&] { check_writable(folder / "folder.png"); }).find("is a folder"),
+              std::string::npos);
     EXPECT_EQ(message_of([&] { check_writable(folder / "fine.EXR"); }), "");
     EXPECT_EQ(folder.files(), 1);
 }
@@ -192,9 +203,11 @@ TEST(Writing, RefusesLayersOfTheWrongSize)
     const ScratchFolder folder;
     Picture picture = flat({1, 1, 1, 1}, 4, 4);
     picture.layers[0].pixels.pop_back();
-    EXPECT_NE(message_of([&] { write_picture(folder / "x.exr", picture); }).find("63 values, 64"), std::string::npos);
+    EXPECT_NE(message_of([&] { write_picture(folder / "x.exr", picture); }).find("63 values, 64"),
+              std::string::npos);
     picture.width = 0;
-    EXPECT_NE(message_of([&] { write_picture(folder / "x.exr", picture); }).find("0 x 4"), std::string::npos);
+    EXPECT_NE(message_of([&] { write_picture(folder / "x.exr", picture); }).find("0 x 4"),
+              std::string::npos);
     EXPECT_EQ(folder.files(), 0);
 }
 
@@ -224,7 +237,8 @@ TEST(Writing, KeepsTheOldFileWhenTheDiskIsFull)
             const SmallDisk disk(2000);
             message = message_of([&] { write_picture(folder / name, every_layer(128, 128)); });
         }
-        EXPECT_NE(message.find("could not be written whole"), std::string::npos) << name << ": " << message;
+        EXPECT_NE(message.find("could not be written whole"), std::string::npos)
+            << name << ": " << message;
         EXPECT_EQ(bytes_of(folder / name), "old");
     }
     EXPECT_EQ(folder.files(), 4);

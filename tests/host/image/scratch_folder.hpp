@@ -17,7 +17,8 @@ public:
     {
         const auto* test = testing::UnitTest::GetInstance()->current_test_info();
         path_ = std::filesystem::temp_directory_path() /
-                (std::string("diptych-") + test->test_suite_name() + "-" + test->name() + "-" + std::to_string(getpid()));
+                (std::string("diptych-") + test->test_suite_name() + "-" + test->name() + "-" +
+                 std::to_string(getpid()));
         std::filesystem::create_directories(path_);
     }
     ~ScratchFolder() { std::filesystem::remove_all(path_); }
@@ -47,4 +48,4 @@ inline void put_bytes(const std::string& path, const std::string& bytes)
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
-} // namespace diptych::image
+}  // namespace diptych::image

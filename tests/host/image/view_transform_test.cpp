@@ -17,7 +17,8 @@ TEST(Srgb, HasItsKnownPointsAndIsItsOwnInverse)
         EXPECT_EQ(std::lround(srgb_encode(srgb_decode(float(k) / 255)) * 255), k);
 }
 
-// Below 0.8 the view takes off exactly 0.04 (or 6.25 x^2 where the smallest component is under 0.08), hue kept.
+// Below 0.8 the view takes off exactly 0.04 (or 6.25 x^2 where the smallest component is under
+// 0.08), hue kept.
 TEST(Neutral, KeepsBaseColours)
 {
     const Rgb grey = view_neutral({0.5f, 0.5f, 0.5f});
@@ -67,7 +68,8 @@ TEST(DisplayValue, StaysBetweenZeroAndOneWhateverComes)
                 EXPECT_LE(v, 1) << x;
             }
         }
-        const Rgb one_stop = display_value({0.1f, 0.2f, 0.3f}, 1, view), twice = display_value({0.2f, 0.4f, 0.6f}, 0, view);
+        const Rgb one_stop = display_value({0.1f, 0.2f, 0.3f}, 1, view),
+                  twice = display_value({0.2f, 0.4f, 0.6f}, 0, view);
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(one_stop[c], twice[c], 1e-6);
     }
 }
