@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/random.h"
+#include "common/stages/stages.h"
 #include "common/stages/surface_frame.h"
 
 #define ROULETTE_FIRST_DEPTH 2  // scattering events before Russian roulette begins

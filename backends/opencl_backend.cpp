@@ -1,0 +1,379 @@
+#include "backends/opencl_backend.hpp"
+
+#include "backends/bvh_build.hpp"
+#include "backends/kernel_sources.hpp"
+#include "backends/opencl_memory.hpp"
+#include "backends/opencl_programs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+namespace diptych {
+namespace {
+
+// A stage's kernel, and how long its launches may be.
+struct StageKernel {
+    opencl::Kernel kernel;
+    int group_size = 1;
+    double seconds_per_path = 0;  // the slowest lately; 0: not measured yet
+
+    // So many that a launch takes half of what is allowed; few as long as nothing is known.
+    int paths_per_launch(double allowed_seconds) const
+    {
+        const int unknown = 1 << 14;
+        if (seconds_per_path <= 0) return unknown;
+        const double wanted = std::clamp(0.5 * allowed_seconds / seconds_per_path, 1024.0, 1e9);
+        return int(wanted) & ~1023;
+    }
+
+    void measured(double seconds, int paths)
+    {
+        seconds_per_path = std::max(seconds / paths, 0.5 * seconds_per_path);
+    }
+};
+
+class OpenclBackend final : public Backend {
+public:
+    explicit OpenclBackend(const BackendOptions& options);
+
+    std::string description() const override;
+    Plan plan(const SceneData& scene) const override;
+    void upload(SceneData& scene) override;
+    void render(const Dispatch& dispatch, Results& results) override;
+    void trace(const Dispatch& dispatch,
+               const std::function<void(const StageState&)>& after_stage) override;
+    Statistics statistics() const override { return statistics_; }
+
+private:
+    struct Running {
+        Stage stage;
+        int paths;
+        opencl::Event event;
+    };
+
+    void build_kernels(unsigned effects);
+    void bind_buffers(StageKernel& stage);
+    void begin(const Dispatch& dispatch);
+    void run(Stage stage, int count, bool is_compacted);
+    int compact(int count, bool is_compacted, bool keeps_order);
+    void note(Stage stage, int paths, opencl::Event event);
+    void collect_times();
+    void download(Results& results);
+    StageState state_after(Stage stage, int bounce);
+
+    BackendOptions options_;
+    DeviceInfo device_;
+    opencl::Context context_;
+    opencl::Queue queue_;
+    ProgramCache cache_;
+
+    unsigned effects_ = 0;
+    std::vector<opencl::Buffer> scene_;
+    DispatchMemory memory_;
+    ProgramSet programs_;
+    std::array<StageKernel, STAGE_COUNT> kernels_;
+    StageKernel compact_scan_;
+    StageKernel compact_write_;
+
+    int paths_ = 0;  // of the dispatch that runs
+    int results_ = 0;
+    std::vector<Running> running_;
+    Statistics statistics_;
+};
+
+// Arguments behind the buffers, in the order of kernels_cl/arguments.h.
+const int first_header = [] {
+    int rows = 0;
+#define COUNT_ROW(...) ++rows;
+    SCENE_BUFFERS(COUNT_ROW)
+    PATH_BUFFERS(COUNT_ROW)
+    RESULT_BUFFERS(COUNT_ROW)
+#undef COUNT_ROW
+    return rows;
+}();
+enum Header { ITEMS, LIVE, CAPACITY, RESULTS, SAMPLES, PIXEL_SHIFT, FIRST, COUNT, IS_COMPACTED };
+int argument(Header header) { return first_header + header; }
+
+constexpr int sentinel = int(0xcdcdcdcd);  // trace(): marks what no stage has written
+
+OpenclBackend::OpenclBackend(const BackendOptions& options)
+    : options_(options), device_(pick_opencl_device(options.device)), context_(device_.device),
+      queue_(context_.queue()), cache_(ProgramCache::default_folder())
+{
+}
+
+std::string OpenclBackend::description() const
+{
+    std::string text =
+        "opencl (" + device_.name + ", " + device_.platform + ", driver " + device_.driver;
+    if (!device_.is_exact) text += "; division and square root are not exact on this device";
+    if (options_.fast_math) text += "; fast math";
+    if (!cache_.notice().empty()) text += "; " + cache_.notice();
+    return text + ")";
+}
+
+Plan OpenclBackend::plan(const SceneData& scene) const
+{
+    return plan_memory(device_, scene, options_.memory_bytes);
+}
+
+void OpenclBackend::upload(SceneData& scene)
+{
+    const auto start = std::chrono::steady_clock::now();
+    statistics_ = {};
+    memory_ = {};
+    if (scene.bvh_nodes.empty()) build_bvh(scene);
+    scene_ = upload_scene(context_, queue_, device_, scene);
+    build_kernels(scene.effects);
+    memory_ = DispatchMemory(context_, plan(scene).items, kernels_[STAGE_compact].group_size);
+    for (int k = 0; k < STAGE_COUNT; ++k)
+        if (programs_.programs[k] && k != STAGE_compact) bind_buffers(kernels_[k]);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    statistics_.setup_seconds = elapsed.count();
+}
+
+StageKernel make_kernel(const opencl::Program& program, const std::string& name)
+{
+    StageKernel stage;
+    stage.kernel = opencl::Kernel(program, name);
+    const size_t wanted = 64;
+    size_t size = 1;
+    while (2 * size <= std::min(wanted, stage.kernel.largest_group())) size *= 2;
+    stage.group_size = int(size);
+    return stage;
+}
+
+void OpenclBackend::build_kernels(unsigned effects)
+{
+    effects_ = effects;
+    programs_ = build_programs(context_, device_, options_, effects, cache_);
+    for (int k = 0; k < STAGE_COUNT; ++k) {
+        const std::optional<opencl::Program>& program = programs_.programs[k];
+        if (program && k != STAGE_compact)
+            kernels_[k] = make_kernel(*program, std::string(stage_names[k]) + "_entry");
+    }
+    const opencl::Program& compaction = *programs_.programs[STAGE_compact];
+    StageKernel& counting = kernels_[STAGE_compact];
+    counting = make_kernel(compaction, "compact_count");
+    compact_scan_ = make_kernel(compaction, "compact_scan");
+    compact_write_ = make_kernel(compaction, "compact_write");
+    // counting and writing must form the same groups
+    counting.group_size = std::min(counting.group_size, compact_write_.group_size);
+    compact_write_.group_size = counting.group_size;
+}
+
+void OpenclBackend::bind_buffers(StageKernel& stage)
+{
+    int index = 0;
+    for (const auto* buffers : {&scene_, &memory_.path_planes, &memory_.result_planes})
+        for (const opencl::Buffer& buffer : *buffers) stage.kernel.set(index++, buffer);
+    stage.kernel.set(argument(ITEMS), memory_.items);
+    stage.kernel.set(argument(LIVE), memory_.live[0]);
+}
+
+void OpenclBackend::begin(const Dispatch& dispatch)
+{
+    paths_ = dispatch.paths();
+    results_ = dispatch.results();
+    if (paths_ > memory_.paths || results_ > memory_.paths)
+        throw std::runtime_error("opencl: a dispatch of " + std::to_string(paths_) +
+                                 " paths exceeds the plan's " + std::to_string(memory_.paths));
+    queue_.write(memory_.items, dispatch.items.size_bytes(), dispatch.items.data());
+    for (int k = 0; k < STAGE_COUNT; ++k) {
+        if (!programs_.programs[k] || k == STAGE_compact) continue;
+        opencl::Kernel& kernel = kernels_[k].kernel;
+        kernel.set(argument(CAPACITY), paths_);
+        kernel.set(argument(RESULTS), results_);
+        kernel.set(argument(SAMPLES), dispatch.samples);
+        kernel.set(argument(PIXEL_SHIFT), dispatch.pixel_shift);
+    }
+    const std::vector<PlaneRow>& rows = result_rows();
+    for (size_t r = 0; r < rows.size(); ++r) {
+        const bool is_id = std::strstr(rows[r].name, "_id") != nullptr;
+        queue_.fill(memory_.result_planes[r],
+                    sizeof(float) * size_t(rows[r].components) * size_t(results_), is_id ? -1 : 0);
+    }
+    statistics_.paths += unsigned(paths_);
+}
+
+void OpenclBackend::run(Stage stage, int count, bool is_compacted)
+{
+    StageKernel& runs = kernels_[stage];
+    runs.kernel.set(argument(LIVE), memory_.live[0]);
+    runs.kernel.set(argument(IS_COMPACTED), is_compacted ? 1 : 0);
+    for (int first = 0; first < count;) {
+        const double allowed = 1e-3 * options_.launch_milliseconds;
+        const int launched = std::min(count - first, runs.paths_per_launch(allowed));
+        runs.kernel.set(argument(FIRST), first);
+        runs.kernel.set(argument(COUNT), launched);
+        const size_t groups = size_t(launched + runs.group_size - 1) / size_t(runs.group_size);
+        note(stage, launched, queue_.launch(runs.kernel, groups, size_t(runs.group_size)));
+        if (runs.seconds_per_path <= 0) collect_times();
+        first += launched;
+    }
+    if (stage == STAGE_intersect) statistics_.rays += unsigned(count);
+    if (stage == STAGE_occlusion) statistics_.shadow_rays += unsigned(count);
+}
+
+// The number of live paths; their list becomes live[0], unless the order is to be kept.
+int OpenclBackend::compact(int count, bool is_compacted, bool keeps_order)
+{
+    const int depth_row = [] {
+        const auto& rows = path_rows();
+        return int(
+            std::find_if(rows.begin(), rows.end(),
+                         [](const PlaneRow& row) { return std::strcmp(row.name, "depth") == 0; }) -
+            rows.begin());
+    }();
+    const opencl::Buffer& depth = memory_.path_planes[size_t(depth_row)];
+    const int size = kernels_[STAGE_compact].group_size;
+    const int groups = (count + size - 1) / size;
+    const auto launch = [&](StageKernel& stage, int launched_groups) {
+        note(STAGE_compact, count,
+             queue_.launch(stage.kernel, size_t(launched_groups), size_t(stage.group_size)));
+    };
+    for (StageKernel* stage : {&kernels_[STAGE_compact], &compact_write_}) {
+        stage->kernel.set(0, depth);
+        stage->kernel.set(1, memory_.live[0]);
+        stage->kernel.set(2, is_compacted ? 1 : 0);
+        stage->kernel.set(3, count);
+        stage->kernel.set(4, memory_.sums);
+    }
+    const auto scratch = [](const StageKernel& stage) {
+        return 2 * sizeof(int) * size_t(stage.group_size);
+    };
+    kernels_[STAGE_compact].kernel.set_local(5, scratch(kernels_[STAGE_compact]));
+    launch(kernels_[STAGE_compact], groups);
+    compact_scan_.kernel.set(0, memory_.sums);
+    compact_scan_.kernel.set(1, groups);
+    compact_scan_.kernel.set(2, memory_.total);
+    compact_scan_.kernel.set_local(3, scratch(compact_scan_));
+    launch(compact_scan_, 1);
+    if (!keeps_order) {
+        compact_write_.kernel.set(5, memory_.live[1]);
+        compact_write_.kernel.set_local(6, scratch(compact_write_));
+        launch(compact_write_, groups);
+        std::swap(memory_.live[0], memory_.live[1]);
+    }
+    int live = 0;
+    queue_.read(memory_.total, sizeof live, &live);
+    collect_times();
+    return live;
+}
+
+void OpenclBackend::note(Stage stage, int paths, opencl::Event event)
+{
+    running_.push_back({stage, paths, std::move(event)});
+}
+
+void OpenclBackend::collect_times()
+{
+    queue_.finish();
+    for (const Running& launch : running_) {
+        const double seconds = launch.event.seconds();
+        statistics_.stage_seconds[stage_names[launch.stage]] += seconds;
+        kernels_[launch.stage].measured(seconds, launch.paths);
+    }
+    running_.clear();
+}
+
+void OpenclBackend::download(Results& results)
+{
+    size_t row = 0;
+    const auto read = [&](auto& to) {
+        to.resize(size_t(result_rows()[row].components) * size_t(results_));
+        queue_.read(memory_.result_planes[row++], to.size() * sizeof to[0], to.data());
+    };
+#define READ_RESULT(type, name) read(results.name);
+    RESULT_BUFFERS(READ_RESULT)
+#undef READ_RESULT
+}
+
+void OpenclBackend::render(const Dispatch& dispatch, Results& results)
+{
+    begin(dispatch);
+    const auto run_all = [&](When when, int count, bool is_compacted) {
+        for (int k = 0; k < STAGE_COUNT; ++k)
+            if (stage_when(Stage(k)) == when && is_active(Stage(k), effects_))
+                run(Stage(k), count, is_compacted);
+    };
+    run_all(When::once, paths_, false);
+    int live = paths_;
+    for (int bounce = 0; live > 0; ++bounce)
+        for (int k = 0; k < STAGE_COUNT; ++k) {
+            const Stage stage = Stage(k);
+            const When when = stage_when(stage);
+            const bool is_due =
+                when == When::each_bounce || (when == When::first_bounce && bounce == 0);
+            if (!is_due || !is_active(stage, effects_)) continue;
+            if (stage == STAGE_compact)
+                live = compact(live, bounce > 0, false);
+            else
+                run(stage, live, bounce > 0);
+        }
+    run_all(When::at_end, results_, false);
+    download(results);
+    collect_times();
+}
+
+StageState OpenclBackend::state_after(Stage stage, int bounce)
+{
+    StageState state{stage, bounce, paths_, {}};
+    const std::vector<PlaneRow>& rows = path_rows();
+    std::vector<std::uint32_t> words;
+    for (size_t r = 0; r < rows.size(); ++r) {
+        words.resize(size_t(rows[r].components) * size_t(paths_));
+        queue_.read(memory_.path_planes[r], words.size() * sizeof words[0], words.data());
+        std::vector<double> plane;
+        const bool is_defined = std::any_of(words.begin(), words.end(), [](std::uint32_t word) {
+            return word != std::uint32_t(sentinel);
+        });
+        if (is_defined) {
+            plane.reserve(words.size());
+            for (const std::uint32_t word : words) {
+                float real;
+                std::memcpy(&real, &word, sizeof real);
+                plane.push_back(rows[r].is_real ? double(real) : double(int(word)));
+            }
+        }
+        state.planes.push_back(std::move(plane));
+    }
+    return state;
+}
+
+void OpenclBackend::trace(const Dispatch& dispatch,
+                          const std::function<void(const StageState&)>& after_stage)
+{
+    begin(dispatch);
+    for (const opencl::Buffer& plane : memory_.path_planes)
+        queue_.fill(plane, plane.bytes(), sentinel);
+    int live = paths_;
+    for (int bounce = 0; live > 0; ++bounce)
+        for (int k = 0; k < STAGE_COUNT && live > 0; ++k) {
+            const Stage stage = Stage(k);
+            const When when = stage_when(stage);
+            const bool is_due = when == When::each_bounce || (when != When::at_end && bounce == 0);
+            if (!is_due || !is_active(stage, effects_)) continue;
+            if (stage == STAGE_compact) {
+                live = compact(paths_, false, true);
+                continue;
+            }
+            run(stage, paths_, false);
+            collect_times();
+            after_stage(state_after(stage, bounce));
+        }
+}
+
+}  // namespace
+
+std::unique_ptr<Backend> make_opencl_backend(const BackendOptions& options)
+{
+    return std::make_unique<OpenclBackend>(options);
+}
+
+}  // namespace diptych

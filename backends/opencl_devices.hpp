@@ -1,0 +1,34 @@
+// Which OpenCL devices there are, and which of them can run the kernels.
+#pragma once
+
+#include "backends/opencl.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace diptych {
+
+struct DeviceInfo {
+    int index = 0;  // over all platforms
+    std::string platform;
+    std::string name;
+    std::string version;  // "OpenCL 3.0 ..."
+    std::string driver;
+    size_t memory_bytes = 0;
+    size_t largest_allocation = 0;
+    bool is_cpu = false;
+    bool is_exact = true;  // division and square root round as IEEE 754 says
+    bool is_usable = true;
+    std::string why_not;  // when it is not usable
+    opencl::Device device;
+};
+
+// Empty where no OpenCL platform is installed.
+std::vector<DeviceInfo> list_opencl_devices();
+
+// By index, or by part of the name or platform, in any case; "": the first usable one, GPUs before
+// CPUs. Throws std::runtime_error when there is none, or when it cannot be used, saying why.
+DeviceInfo pick_opencl_device(const std::string& choice);
+
+}  // namespace diptych

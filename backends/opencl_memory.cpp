@@ -1,0 +1,132 @@
+#include "backends/opencl_memory.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace diptych {
+namespace {
+
+constexpr int paths_per_item = QUANTUM << (2 * BLOCK_SHIFT);
+constexpr int results_per_item = 1 << (2 * BLOCK_SHIFT);
+constexpr int most_items = 1024;  // 4 million paths: what keeps the largest GPUs busy
+
+std::string megabytes(size_t bytes) { return std::to_string((bytes >> 20) + 1) + " MB"; }
+
+size_t plane_bytes(const std::vector<PlaneRow>& rows)
+{
+    size_t bytes = 0;
+    for (const PlaneRow& row : rows) bytes += sizeof(float) * size_t(row.components);
+    return bytes;
+}
+
+size_t item_bytes()
+{
+    const size_t lists = 3 * sizeof(int);  // live, twice, and at most one sum a path
+    return paths_per_item * (plane_bytes(path_rows()) + lists) +
+           results_per_item * plane_bytes(result_rows()) + sizeof(WorkItem);
+}
+
+size_t scene_bytes(const SceneData& scene)
+{
+    size_t bytes = 0;
+#define ADD_BYTES(type, name) bytes += scene.name.size() * sizeof(type);
+    SCENE_BUFFERS(ADD_BYTES)
+#undef ADD_BYTES
+    return bytes;
+}
+
+// The tree that upload() will build where the scene has none yet: about one node for two triangles.
+size_t structure_bytes(const SceneData& scene)
+{
+    if (!scene.bvh_nodes.empty()) return 0;
+    return (scene.triangles.size() + 2 * scene.instances.size() + 1) *
+           (sizeof(BvhNode) / 2 + sizeof(int));
+}
+
+std::vector<opencl::Buffer> planes(const opencl::Context& context,
+                                   const std::vector<PlaneRow>& rows, int entries)
+{
+    std::vector<opencl::Buffer> buffers;
+    for (const PlaneRow& row : rows)
+        buffers.push_back(
+            context.buffer(sizeof(float) * size_t(row.components) * size_t(entries), row.name));
+    return buffers;
+}
+
+}  // namespace
+
+#define PLANE_ROW(type, name) {#name, int(sizeof(type) / sizeof(PLANE(type))), #type[0] == 'f'},
+#define PATH_ROW(type, name, life) PLANE_ROW(type, name)
+
+const std::vector<PlaneRow>& path_rows()
+{
+    static const std::vector<PlaneRow> rows = {PATH_BUFFERS(PATH_ROW)};
+    return rows;
+}
+
+const std::vector<PlaneRow>& result_rows()
+{
+    static const std::vector<PlaneRow> rows = {RESULT_BUFFERS(PLANE_ROW)};
+    return rows;
+}
+
+std::vector<opencl::Buffer> upload_scene(const opencl::Context& context, opencl::Queue& queue,
+                                         const DeviceInfo& device, const SceneData& scene)
+{
+    std::vector<opencl::Buffer> buffers;
+    const auto upload = [&](const char* name, const void* data, size_t bytes) {
+        if (bytes > device.largest_allocation)
+            throw std::runtime_error("opencl: " + device.name + ": the scene's " + name + " need " +
+                                     megabytes(bytes) + ", the device allocates at most " +
+                                     megabytes(device.largest_allocation) +
+                                     " at once; simplify the scene or use --backend cpu");
+        buffers.push_back(context.buffer(bytes, name));
+        queue.write(buffers.back(), bytes, data);
+    };
+    // kernels may read element 0 of a buffer that the scene has no use for
+#define UPLOAD(type, name)                                                  \
+    if (scene.name.empty()) {                                               \
+        const type nothing = {};                                            \
+        upload(#name, &nothing, sizeof(type));                              \
+    } else {                                                                \
+        upload(#name, scene.name.data(), scene.name.size() * sizeof(type)); \
+    }
+    SCENE_BUFFERS(UPLOAD)
+#undef UPLOAD
+    return buffers;
+}
+
+DispatchMemory::DispatchMemory(const opencl::Context& context, int item_count, int group_size)
+    : paths(item_count * paths_per_item), results(item_count * results_per_item),
+      path_planes(planes(context, path_rows(), paths)),
+      result_planes(planes(context, result_rows(), results)),
+      // items of one pixel are many more for as many paths
+      items(context.buffer(sizeof(WorkItem) * size_t(paths / QUANTUM), "items"))
+{
+    for (opencl::Buffer& list : live) list = context.buffer(sizeof(int) * size_t(paths), "live");
+    const int groups = (paths + group_size - 1) / group_size;
+    sums = context.buffer(sizeof(int) * size_t(groups), "sums");
+    total = context.buffer(sizeof(int), "total");
+}
+
+Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory_bytes)
+{
+    Plan plan;
+    plan.scene_bytes = scene_bytes(scene);
+    plan.structure_bytes = structure_bytes(scene);
+    const size_t taken = plan.scene_bytes + plan.structure_bytes;
+    const size_t budget = std::min(memory_bytes, device.memory_bytes);
+    if (budget < taken + item_bytes())
+        throw std::runtime_error(
+            "opencl: " + device.name + ": " + megabytes(budget) + " do not hold the scene (" +
+            megabytes(taken) + ") and one block of paths (" + megabytes(item_bytes()) + "); " +
+            (budget < memory_bytes ? "choose a device with more memory" : "raise --memory"));
+    const size_t widest = 3 * sizeof(float) * paths_per_item;  // the buffer of a float3 row
+    const size_t items = std::min(
+        {(budget - taken) / item_bytes(), device.largest_allocation / widest, size_t{most_items}});
+    plan.items = int(std::max<size_t>(items, 1));
+    plan.path_bytes = size_t(plan.items) * item_bytes();
+    return plan;
+}
+
+}  // namespace diptych

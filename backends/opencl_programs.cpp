@@ -1,0 +1,108 @@
+#include "backends/opencl_programs.hpp"
+
+#include "backends/kernel_sources.hpp"
+#include "backends/sha256.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <future>
+#include <stdexcept>
+
+namespace diptych {
+namespace {
+
+// A fault's name becomes part of the options: letters only.
+std::string fault_option(const std::string& fault)
+{
+    const bool is_word = std::all_of(fault.begin(), fault.end(),
+                                     [](unsigned char c) { return std::isalpha(c) || c == '_'; });
+    if (!is_word) throw std::runtime_error("opencl: \"" + fault + "\" is no name of a fault");
+    return " -D FAULT=FAULT_" + (fault.empty() ? "none" : fault);
+}
+
+std::string source_for(Stage stage, const BackendOptions& options)
+{
+    std::string source = kernel_source(stage);
+    const std::string exact = "FP_CONTRACT OFF";
+    const size_t at = source.find(exact);
+    if (options.fast_math && at != std::string::npos)
+        source.replace(at, exact.size(), "FP_CONTRACT ON");
+    return source;
+}
+
+std::string cache_key(const DeviceInfo& device, const std::string& options,
+                      const std::string& source)
+{
+    Sha256 hash;
+    for (const std::string& part :
+         {source, options, device.name, device.driver, device.version, device.platform,
+          device.device.platform_text(CL_PLATFORM_VERSION)}) {
+        hash.add(std::to_string(part.size()) + ":");
+        hash.add(part);
+    }
+    return hash.finish();
+}
+
+struct Built {
+    std::optional<opencl::Program> program;
+    std::string key;
+    std::string new_binary;  // to be stored; empty when it came from the cache
+};
+
+Built build(const opencl::Context& context, const DeviceInfo& device, const std::string& source,
+            const std::string& options, const std::string& name, const ProgramCache& cache)
+{
+    Built built;
+    built.key = cache_key(device, options, source);
+    if (const std::optional<std::string> binary = cache.load(built.key))
+        built.program = context.load(*binary, options, name);
+    if (!built.program) {
+        built.program = context.build(source, options, name);
+        built.new_binary = built.program->binary();
+    }
+    return built;
+}
+
+}  // namespace
+
+std::string program_options(const DeviceInfo& device, const BackendOptions& options,
+                            unsigned effects)
+{
+    std::string text = "-cl-std=CL1.2 -D EFFECTS=" + std::to_string(effects);
+    text += fault_option(options.plant_fault);
+    if (options.fast_math)
+        text += " -cl-fast-relaxed-math -cl-mad-enable";
+    else if (device.is_exact)
+        text += " -cl-fp32-correctly-rounded-divide-sqrt";
+    return text;
+}
+
+ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& device,
+                          const BackendOptions& options, unsigned effects, ProgramCache& cache)
+{
+    const std::string flags = program_options(device, options, effects);
+    std::array<std::future<Built>, STAGE_COUNT> jobs;
+    for (int k = 0; k < STAGE_COUNT; ++k) {
+        const Stage stage = Stage(k);
+        if (!is_active(stage, effects)) continue;
+        jobs[k] = std::async(std::launch::async, [&, stage] {
+            return build(context, device, source_for(stage, options), flags, stage_names[stage],
+                         cache);
+        });
+    }
+    ProgramSet set;
+    for (int k = 0; k < STAGE_COUNT; ++k) {
+        if (!jobs[k].valid()) continue;
+        Built built = jobs[k].get();
+        if (built.new_binary.empty()) {
+            ++set.from_cache;
+        } else {
+            ++set.compiled;
+            cache.store(built.key, built.new_binary);
+        }
+        set.programs[k] = std::move(built.program);
+    }
+    return set;
+}
+
+}  // namespace diptych

@@ -1,0 +1,27 @@
+// From sources to programs on a device: only what the scene needs, in parallel, through the cache.
+#pragma once
+
+#include "backends/backend.hpp"
+#include "backends/opencl_devices.hpp"
+#include "backends/program_cache.hpp"
+
+#include <array>
+#include <optional>
+
+namespace diptych {
+
+// The compiler's options: language, effects, exactness, planted fault.
+std::string program_options(const DeviceInfo& device, const BackendOptions& options,
+                            unsigned effects);
+
+struct ProgramSet {
+    std::array<std::optional<opencl::Program>, STAGE_COUNT> programs;  // none: not active
+    int from_cache = 0;
+    int compiled = 0;
+};
+
+// The programs of all stages that are active for `effects`. Throws with the compiler's log.
+ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& device,
+                          const BackendOptions& options, unsigned effects, ProgramCache& cache);
+
+}  // namespace diptych

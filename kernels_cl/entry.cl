@@ -1,0 +1,31 @@
+// The kernel of one stage. The build runs the C preprocessor over this file once for each row of
+// common/stages/stages.h, with STAGE and WHEN as the row says; EFFECTS and FAULT stay open until
+// the program is compiled for a device.
+#include "platform.h"
+
+#include "kernels_cl/arguments.h"
+#include "kernels_cl/faults.h"
+
+#define TEXT(words) #words
+#define STAGE_HEADER(stage) TEXT(common/stages/stage.h)
+#include STAGE_HEADER(STAGE)
+
+#define ENTRY_NAME_(stage) stage##_entry
+#define ENTRY_NAME(stage) ENTRY_NAME_(stage)
+
+#define RUN_once(stage, k) stage(&scene, &paths, k)
+#define RUN_each_bounce(stage, k) stage(&scene, &paths, is_compacted ? live[k] : k)
+#define RUN_first_bounce(stage, k) RUN_each_bounce(stage, k)
+#define RUN_at_end(stage, k) \
+    for (; paths.turn < samples; ++paths.turn) stage(&scene, &paths, k)
+#define RUN_(when, stage, k) RUN_##when(stage, k)
+#define RUN(when, stage, k) RUN_(when, stage, k)
+
+__kernel void ENTRY_NAME(STAGE)(KERNEL_ARGUMENTS)
+{
+    KERNEL_VIEWS
+    const int k = (int)get_global_id(0);
+    if (k < count) {
+        RUN(WHEN, STAGE, first + k);
+    }
+}
