@@ -5,6 +5,7 @@
 #include "host/scene/scene_assembly.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 namespace diptych {
@@ -112,6 +113,11 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
     s.environment_scale = {scale, scale, scale, 0};
     s.environment_width = map.width;
     s.environment_height = map.height;
+    const size_t texels = map.floats.size() / 4;
+    if (data.texels_float.size() + texels > size_t(std::numeric_limits<int>::max())) {
+        throw SceneError("environment: its texels and the textures' are more than 32-bit indices "
+                         "reach; use a smaller map");
+    }
     s.environment_texels = int(data.texels_float.size());
     for (size_t t = 0; t < map.floats.size(); t += 4) {
         data.texels_float.push_back(

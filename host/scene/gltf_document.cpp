@@ -15,7 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-std::vector<std::uint8_t> read_file(const fs::path& file, const std::string& where)
+// The first `at_most` bytes of a file, or all.
+std::vector<std::uint8_t> read_file(const fs::path& file, const std::string& where,
+                                    size_t at_most = SIZE_MAX)
 {
     std::error_code error;
     const auto status = fs::status(file, error);
@@ -29,7 +31,7 @@ std::vector<std::uint8_t> read_file(const fs::path& file, const std::string& whe
         throw SceneError(where + ": is not a regular file; name a file");
     }
     std::ifstream stream(file, std::ios::binary);
-    const auto size = fs::file_size(file, error);
+    const size_t size = std::min<size_t>(fs::file_size(file, error), at_most);
     if (!stream || error) {
         throw SceneError(where + ": cannot be opened; check its permissions");
     }
@@ -273,7 +275,8 @@ const std::vector<std::uint8_t>& GltfDocument::buffer(int index)
     } else if (is_data_uri(source.uri)) {
         bytes = data_uri_bytes(source.uri, where);
     } else {
-        bytes = read_file(resolved(source.uri, where), where + " (" + printable(source.uri) + ")");
+        bytes = read_file(resolved(source.uri, where), where + " (" + printable(source.uri) + ")",
+                          source.byte_length);
     }
     if (bytes.size() < source.byte_length) {
         throw SceneError(fmt::format("{}: {} bytes announced, {} there; restore the missing data",

@@ -129,10 +129,11 @@ void GltfLoader::visit_nodes()
         while (!open.empty()) {
             const Visit visit = open.back();
             open.pop_back();
-            if (node_visited_[size_t(visit.node)]++) {
+            if (node_visited_[size_t(visit.node)]) {
                 ++nodes_of_two_parents_;
                 continue;
             }
+            node_visited_[size_t(visit.node)] = 1;
             const tinygltf::Node& node = model_.nodes[size_t(visit.node)];
             const Transform to_world = visit.parent * local_transform(node);
             if (!to_world.is_finite()) {

@@ -37,8 +37,9 @@ void check_spec(const OIIO::ImageSpec& spec, const std::string& where, size_t ma
     if (spec.depth > 1) {
         throw SceneError(where + ": a volume, not an image; replace the image");
     }
-    const auto pixels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
-    if (pixels > max_pixels || spec.nchannels > 64) {
+    // The limit is meant for four channels; more of them count as more pixels.
+    const double pixels = double(spec.width) * spec.height * std::max(spec.nchannels, 4) / 4;
+    if (pixels > double(max_pixels)) {
         throw SceneError(fmt::format("{}: an image of {} x {} pixels with {} channels is beyond "
                                      "the limit of {} pixels; use a smaller image or raise the "
                                      "limit",
@@ -70,9 +71,12 @@ std::array<int, 4> channel_order(const OIIO::ImageSpec& spec)
 }
 
 template<typename T>
-std::vector<T> reordered(const std::vector<T>& values, int channels,
-                         const std::array<int, 4>& order, T opaque)
+std::vector<T> reordered(std::vector<T>&& values, int channels, const std::array<int, 4>& order,
+                         T opaque)
 {
+    if (channels == 4 && order == std::array{0, 1, 2, 3}) {
+        return std::move(values);
+    }
     const size_t texels = values.size() / size_t(channels);
     std::vector<T> result(4 * texels);
     for (size_t t = 0; t < texels; ++t) {
@@ -123,13 +127,13 @@ Picture read_pixels(OIIO::ImageInput& input, const std::string& where, size_t ma
         if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, bytes.data())) {
             fail();
         }
-        picture.bytes = reordered<std::uint8_t>(bytes, spec.nchannels, order, 255);
+        picture.bytes = reordered<std::uint8_t>(std::move(bytes), spec.nchannels, order, 255);
     } else {
         std::vector<float> floats(values);
         if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, floats.data())) {
             fail();
         }
-        picture.floats = reordered<float>(floats, spec.nchannels, order, 1.0f);
+        picture.floats = reordered<float>(std::move(floats), spec.nchannels, order, 1.0f);
         picture.bad_texels = sanitize(picture.floats);
     }
     return picture;
@@ -175,6 +179,11 @@ const char* kind_of(std::span<const std::uint8_t> b)
     return nullptr;
 }
 
+bool is_ktx2(std::span<const std::uint8_t> b)
+{
+    return b.size() >= 7 && b[0] == 0xab && std::equal(b.begin() + 1, b.begin() + 7, "KTX 20");
+}
+
 }  // namespace
 
 Picture read_picture(const std::filesystem::path& file, const std::string& where, size_t max_pixels)
@@ -192,6 +201,10 @@ Picture read_picture(std::span<const std::uint8_t> bytes, const std::string& whe
                      size_t max_pixels)
 {
     const char* kind = kind_of(bytes);
+    if (is_ktx2(bytes)) {
+        throw SceneError(where + ": is a KTX2 image (KHR_texture_basisu), which cannot be read; "
+                                 "export it with PNG or JPEG images");
+    }
     if (!kind) {
         throw SceneError(where + ": its first bytes are of no known image format; use PNG or JPEG");
     }

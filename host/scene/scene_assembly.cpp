@@ -121,6 +121,10 @@ uint packed_tangent(const float4& tangent, const Transform& to_world, bool is_mi
 
 SceneData SceneAssembly::run()
 {
+    if (builder_.width_ < 1 || builder_.height_ < 1) {
+        throw SceneError(fmt::format("picture: {} x {} pixels; both must be 1 or more",
+                                     builder_.width_, builder_.height_));
+    }
     data_.settings.resize(1, Settings{});
     data_.notices = std::move(builder_.notices_);
     data_.settings[0].width = builder_.width_;
@@ -141,6 +145,7 @@ SceneData SceneAssembly::run()
     }
     assemble_lights();
     assemble_effects();
+    tell_what_was_repaired();
     return std::move(data_);
 }
 
@@ -149,6 +154,18 @@ const TextureUse* SceneAssembly::normal_texture(const MeshPart& part) const
     const MaterialInput& material = builder_.materials_[size_t(part.material)];
     const TextureUse& use = material.normal_texture;
     return use.image >= 0 && !material.is_unlit ? &use : nullptr;
+}
+
+void SceneAssembly::tell_what_was_repaired()
+{
+    const auto tell = [&](size_t count, const char* what) {
+        if (count > 0) {
+            data_.notices.push_back(fmt::format("meshes: {} {}", count, what));
+        }
+    };
+    tell(data_.degenerate_triangles, "triangles without area dropped");
+    tell(repaired_normals_, "normals without a direction replaced by the faces'");
+    tell(repaired_uvs_, "texture coordinates that are not finite taken as (0, 0)");
 }
 
 // Counts the placements of each mesh, leaving out those that flatten it to nothing.
@@ -253,6 +270,12 @@ void SceneAssembly::prepare_part(const std::string& where, MeshPart& part)
         repaired_normals_ += repair_normals(part);
     }
     const TextureUse* map = normal_texture(part);
+    const auto is_bad = [](const float4& t) {
+        return !is_finite(xyz(t)) || length(to_vec(t)) == 0;
+    };
+    if (std::ranges::any_of(part.tangents, is_bad)) {
+        part.tangents.clear();
+    }
     if (!map || (!part.tangents.empty() && !part.normals.empty())) {
         return;
     }

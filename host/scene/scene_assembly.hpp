@@ -26,6 +26,7 @@ private:
     };
 
     // scene_assembly.cpp: geometry
+    void tell_what_was_repaired();
     void survey_placements();
     void survey_materials();
     void check_part(const std::string& where, const MeshPart& part) const;
@@ -70,7 +71,6 @@ private:
     bool any_colors_ = false;
     size_t repaired_normals_ = 0;
     size_t repaired_uvs_ = 0;
-    size_t missing_uvs_ = 0;
     std::vector<PictureFacts> pictures_;
     std::vector<std::array<double, 3>> mean_emission_;  // by material
     double environment_power_ = 0;  // luminance of its radiance, over all directions; 0 without
