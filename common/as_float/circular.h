@@ -104,7 +104,7 @@ SHARED float math_cos(float x)
     return math_abs(x) < FLOAT_INFINITY ? float_flip(value, sign) : FLOAT_NAN;
 }
 
-// Within 3.5 ulp for every finite x.
+// Within 3.75 ulp for every finite x.
 SHARED float math_tan(float x)
 {
     const Angle angle = angle_reduce(math_abs(x));

@@ -68,7 +68,7 @@ struct Unary {
 const Unary unary[] = {
     {"sin", OURS(sin), LIBRARY(sin), 2.0, -10.0f, 10.0f},
     {"cos", OURS(cos), LIBRARY(cos), 2.0, -10.0f, 10.0f},
-    {"tan", OURS(tan), LIBRARY(tan), 3.5, -10.0f, 10.0f},
+    {"tan", OURS(tan), LIBRARY(tan), 3.75, -10.0f, 10.0f},
     {"sinpi", OURS(sinpi), exact_sinpi, 2.0, -2.0f, 2.0f},
     {"cospi", OURS(cospi), exact_cospi, 2.0, -2.0f, 2.0f},
     {"asin", OURS(asin), LIBRARY(asin), 2.5, -1.0f, 1.0f},
