@@ -8,7 +8,8 @@ namespace {
 
 constexpr int paths_per_item = QUANTUM << (2 * BLOCK_SHIFT);
 constexpr int results_per_item = 1 << (2 * BLOCK_SHIFT);
-constexpr int most_items = 1024;  // 4 million paths: what keeps the largest GPUs busy
+constexpr int most_items = 1024;      // 4 million paths: what keeps the largest GPUs busy
+constexpr int most_items_of_cpu = 8;  // 32 thousand paths: what stays in a processor's caches
 
 std::string megabytes(size_t bytes) { return std::to_string((bytes >> 20) + 1) + " MB"; }
 
@@ -122,8 +123,9 @@ Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory
             megabytes(taken) + ") and one block of paths (" + megabytes(item_bytes()) + "); " +
             (budget < memory_bytes ? "choose a device with more memory" : "raise --memory"));
     const size_t widest = 3 * sizeof(float) * paths_per_item;  // the buffer of a float3 row
+    const int most = device.is_cpu ? most_items_of_cpu : most_items;
     const size_t items = std::min(
-        {(budget - taken) / item_bytes(), device.largest_allocation / widest, size_t{most_items}});
+        {(budget - taken) / item_bytes(), device.largest_allocation / widest, size_t(most)});
     plan.items = int(std::max<size_t>(items, 1));
     plan.path_bytes = size_t(plan.items) * item_bytes();
     return plan;
