@@ -67,7 +67,7 @@ CLI::App* add_compare_command(CLI::App& app, CompareOptions& options)
         },
         "Print one JSON object instead of text, or write it to FILE beside the text (put it after "
         "A and B)");
-    json->expected(0, 1)->type_name("[FILE]");
+    json->expected(0, 1)->allow_extra_args(false)->type_name("[FILE]");
     CLI::Option* manifest = command->add_option("--manifest", options.manifest,
                                                 "Run the comparisons listed in a JSON file");
     manifest->type_name("FILE");
