@@ -92,6 +92,13 @@ public:
     virtual Statistics statistics() const = 0;
 };
 
+// Names of the stages, by Stage.
+inline constexpr const char* stage_names[] = {
+#define STAGE_NAME(name, body, when, needs) #name,
+    STAGES(STAGE_NAME)
+#undef STAGE_NAME
+};
+
 // Names: cpu, opencl, twin, double. Throws std::runtime_error for others, or when the device cannot
 // be used.
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);

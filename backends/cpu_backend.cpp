@@ -80,6 +80,7 @@ private:
     const SceneData* scene_ = nullptr;
     std::vector<const void*> buffers_;
     SceneView scene_view_;
+    Settings neutral_settings_;
     std::vector<uint> neutral_normals_;
     std::vector<uint> neutral_tangents_;
     std::vector<float4> neutral_colors_;
@@ -137,6 +138,13 @@ void CpuBackend::bind(const SceneData& scene)
 void CpuBackend::add_neutral(const SceneData& scene)
 {
     const unsigned covered = kernels_.covered_effects(scene.effects);
+    neutral_settings_ = scene.settings.at(0);
+    if (neutral_settings_.environment_width == 0) {  // one black texel, one cell
+        neutral_settings_.environment_width = neutral_settings_.environment_height = 1;
+        neutral_settings_.cell_columns = neutral_settings_.cell_rows = 1;
+        neutral_settings_.environment_scale = make_float4(0, 0, 0, 0);
+    }
+    buffers_[0] = &neutral_settings_;
     const size_t vertices = scene.positions.size();
     const auto replace = [&](auto& neutral, const auto& own, auto value, int row) {
         if (!own.empty()) return;

@@ -53,7 +53,7 @@ Paths paths_from(const PathView& view)
 // serves it. A condition that is the same for all paths would keep a loop from being vectorised, so
 // it must be a constant.
 constexpr unsigned variants[] = {
-    EFFECT_EMISSION,
+    EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
         EFFECT_BASE_TEXTURE,

@@ -79,7 +79,7 @@ SHARED float environment_pdf(const Scene* scene, float2 uv)
     const int column = x < 0 ? 0 : (x >= columns ? columns - 1 : x);
     const int row = y < 0 ? 0 : (y >= rows ? rows - 1 : y);
     const float share = scene->environment_cells[row * columns + column].probability;
-    const float sine = math_sin(PI * uv.y);
+    const float sine = math_sinpi(uv.y);
     const float cells = (float)columns * (float)rows;
     return sine > 0.0f ? share * cells / (2.0f * PI * PI * sine) : 0.0f;
 }
@@ -100,10 +100,10 @@ SHARED LightSample environment_light_sample(const Scene* scene, float2 choice, f
     const int column = cell - row * columns;
     const float2 uv = make_float2(((float)column + within.x) / (float)columns,
                                   ((float)row + within.y) / (float)rows);
-    const float theta = PI * uv.y;
-    const float phi = 2.0f * PI * (uv.x - 0.5f);
-    const float sine = math_sin(theta);
-    const float3 in_environment = make_float3(math_cos(phi) * sine, math_cos(theta), math_sin(phi) * sine);
+    const float around = 2.0f * uv.x - 1.0f;
+    const float sine = math_sinpi(uv.y);
+    const float3 in_environment =
+        make_float3(math_cospi(around) * sine, math_cospi(uv.y), math_sinpi(around) * sine);
     const float share = scene->environment_cells[cell].probability;
     const float cells = (float)columns * (float)rows;
 

@@ -132,7 +132,7 @@ SHARED Lobes lobes_of(Surface surface, float cosine)
     const float spread = vec_luminance(lobes.diffuse) * lobes.dielectric_through +
                          vec_luminance(lobes.bounced) * lobes.not_single;
     const float total = single + spread;
-    lobes.specular_probability = total > 0.0f ? single / total : 0.0f;
+    lobes.specular_probability = single / math_greater(total, 1e-20f);
     return lobes;
 }
 
@@ -157,8 +157,8 @@ SHARED float3 lobes_spread(Lobes lobes, float cosine_in)
     return lobes.diffuse * diffuse + lobes.bounced * bounced;
 }
 
-// sin^2 of the halfway vector's angle is computed from its components, not from 1 - cos^2, which loses
-// every digit of a narrow lobe.
+// sin^2 of the halfway vector's angle is computed from its components, not from 1 - cos^2, which
+// loses every digit of a narrow lobe.
 SHARED float ggx_distribution(float3 halfway, float alpha)
 {
     const float alpha2 = alpha * alpha;
@@ -236,9 +236,9 @@ SHARED ScatterSample lobes_sample(Lobes lobes, float3 wo, float2 u)
     const float radial = is_specular
                              ? u.x / math_greater(p, 1e-12f)
                              : math_lesser((u.x - p) / math_greater(1.0f - p, 1e-12f), 1.0f);
-    const float phi = 2.0f * PI * u.y;
-    const float cos_phi = math_cos(phi);
-    const float sin_phi = math_sin(phi);
+    const float turn = 2.0f * u.y;
+    const float cos_phi = math_cospi(turn);
+    const float sin_phi = math_sinpi(turn);
 
     const float alpha = math_greater(lobes.alpha, MIRROR_ALPHA);
     const float3 visible = ggx_sample_visible(wo, alpha, radial, cos_phi, sin_phi);
@@ -250,9 +250,9 @@ SHARED ScatterSample lobes_sample(Lobes lobes, float3 wo, float2 u)
     const float3 cosine = make_float3(disc * cos_phi, disc * sin_phi, math_sqrt(1.0f - radial));
 
     ScatterSample sample;
-    sample.wi =
-        make_float3(is_specular ? reflected.x : cosine.x, is_specular ? reflected.y : cosine.y,
-                    is_specular ? reflected.z : cosine.z);
+    // Factors, not selects: comparing what a select gives keeps g++ from vectorising.
+    const float specular_share = is_specular ? 1.0f : 0.0f;
+    sample.wi = reflected * specular_share + cosine * (1.0f - specular_share);
     const Scatter scatter = lobes_evaluate(lobes, wo, sample.wi);
     const int is_mirror_sample = is_specular & lobes.is_mirror;
     const float3 mirrored =
@@ -282,10 +282,11 @@ SHARED Scatter diffuse_evaluate(float3 reflectance, float3 wi)
 
 SHARED ScatterSample diffuse_sample(float3 reflectance, float2 u)
 {
-    const float phi = 2.0f * PI * u.y;
+    const float turn = 2.0f * u.y;
     const float disc = math_sqrt(u.x);
     ScatterSample sample;
-    sample.wi = make_float3(disc * math_cos(phi), disc * math_sin(phi), math_sqrt(1.0f - u.x));
+    sample.wi =
+        make_float3(disc * math_cospi(turn), disc * math_sinpi(turn), math_sqrt(1.0f - u.x));
     sample.weight = reflectance;
     sample.pdf = math_greater(sample.wi.z, 1e-6f) * INV_PI;
     return sample;

@@ -117,7 +117,12 @@ MeshPart lathe(const Vec3& foot, const std::vector<std::array<double, 2>>& profi
     for (int row = 0; row + 1 < rows; ++row) {
         for (int column = 0; column < segments; ++column) {
             const uint a = uint(row * (segments + 1) + column), b = a + uint(segments) + 1;
-            part.indices.insert(part.indices.end(), {a, a + 1, b, b, a + 1, b + 1});
+            if (profile[size_t(row)][0] > 0) {
+                part.indices.insert(part.indices.end(), {a, a + 1, b});
+            }
+            if (profile[size_t(row) + 1][0] > 0) {
+                part.indices.insert(part.indices.end(), {b, a + 1, b + 1});
+            }
         }
     }
     return part;
@@ -152,10 +157,10 @@ void add_room(SceneBuilder& scene)
     const int plaster = matte("plaster", 0.76f, 0.73f, 0.68f);
     const int terracotta = matte("terracotta", 0.60f, 0.20f, 0.11f);
     const int teal = matte("teal", 0.07f, 0.27f, 0.30f);
-    const int floor = scene.add_material(
-        {.name = "tiles",
-         .roughness = 0.25f,
-         .base_texture = {.image = scene.add_image(painted(1024, 1024, tiles))}});
+    const int floor =
+        scene.add_material({.name = "tiles",
+                            .roughness = 0.25f,
+                            .base_texture = {.image = scene.add_image(painted(512, 512, tiles))}});
     const auto wall = [&](const Vec3& origin, const Vec3& u, const Vec3& v, int material) {
         scene.place(scene.add_mesh(quad_mesh(origin, u, v, material)));
     };
@@ -184,10 +189,10 @@ void add_objects(SceneBuilder& scene)
                                           .roughness = 0.45f});
     const int lacquer = scene.add_material(
         {.name = "lacquer", .base_color = {0.03f, 0.10f, 0.33f, 1}, .roughness = 0.08f});
-    const int marble_stone = scene.add_material(
-        {.name = "marble",
-         .roughness = 0.15f,
-         .base_texture = {.image = scene.add_image(painted(1024, 1024, marble))}});
+    const int marble_stone =
+        scene.add_material({.name = "marble",
+                            .roughness = 0.15f,
+                            .base_texture = {.image = scene.add_image(painted(512, 512, marble))}});
 
     const Transform turned = translation(0.15, 0, -0.55) * rotation_about({0, 1, 0}, 0.4);
     scene.place(scene.add_mesh(box_mesh({-0.34, 0, -0.34}, {0.34, 0.72, 0.34}, stone)), turned);

@@ -9,13 +9,13 @@
 namespace diptych {
 
 struct LoadOptions {
-    std::string camera;     // name of a camera or of its node, or its number; empty: the first
+    std::string camera{};   // name of a camera or of its node, or its number; empty: the first
     bool has_view = false;  // look from eye to target instead, with `fov`
     float eye[3] = {0, 0, 0};
     float target[3] = {0, 0, 0};
     float up[3] = {0, 1, 0};
-    float fov = 0.78539816f;  // vertical field of view, radians
-    std::string environment;  // empty: a neutral sky if nothing emits; "none"; or an image file
+    float fov = 0.78539816f;    // vertical field of view, radians
+    std::string environment{};  // empty: a neutral sky if nothing emits; "none"; or an image file
     float environment_rotation = 0;  // radians about +Y
     float environment_scale = 1;     // radiance = texel * scale
     int width = 512;                 // of the picture: the horizontal field of view follows it

@@ -1,0 +1,31 @@
+// `diptych render`: a scene to pictures.
+#pragma once
+
+#include "host/commands/scene_flags.hpp"
+#include "host/image/image.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace diptych {
+
+struct RenderCommand {
+    SceneFlags scene;
+    DeviceFlags device;
+    std::vector<std::string> outputs;
+    std::string pixel;
+    std::string json;
+    std::string view = "standard";
+    image::WriteOptions write;
+    bool is_quiet = false;
+    bool is_strict = false;
+    bool is_reproducible = false;
+    std::string command_line;
+};
+
+CLI::App* add_render_command(CLI::App& app, RenderCommand& command);
+
+// 0: done; 130: interrupted, pictures written. Errors are thrown.
+int run_render_command(const RenderCommand& command);
+
+}  // namespace diptych

@@ -1,0 +1,186 @@
+#include "host/commands/render_report.hpp"
+
+#include "backends/sha256.hpp"
+#include "kernels_cpu/path_rows.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <unistd.h>
+
+namespace diptych {
+namespace {
+
+using nlohmann::json;
+
+std::string megabytes(size_t bytes) { return fmt::format("{:.1f} MiB", double(bytes) / 1048576.0); }
+
+std::vector<std::string> effect_names(unsigned effects)
+{
+    std::vector<std::string> names;
+#define ADD_NAME(name, bit, words) \
+    if (effects & EFFECT_##name) names.push_back(#name);
+    EFFECTS_LIST(ADD_NAME)
+    return names;
+}
+
+std::string layer_hash(const image::Layer& layer)
+{
+    Sha256 hash;
+    hash.add(layer.pixels.data(), layer.pixels.size() * sizeof(float));
+    hash.add(layer.ids.data(), layer.ids.size() * sizeof(uint32_t));
+    return hash.finish();
+}
+
+std::string duration(double seconds)
+{
+    const int whole = int(std::ceil(seconds));
+    return whole < 60 ? fmt::format("{} s", whole)
+                      : fmt::format("{}:{:02} min", whole / 60, whole % 60);
+}
+
+// The first plane of the state with a value that is not finite, of path p.
+const char* faulty_buffer(const StageState& state, size_t p)
+{
+    for (int r = 0; r < path_row_count; ++r) {
+        const std::vector<double>& plane = state.planes[size_t(r)];
+        const size_t stride = plane.size() / size_t(path_rows[r].components);
+        for (size_t c = 0; c < size_t(path_rows[r].components); ++c)
+            if (!plane.empty() && !std::isfinite(plane[c * stride + p])) return path_rows[r].name;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan, int samples)
+{
+    const Settings& settings = scene.settings[0];
+    for (const std::string& line : scene.notices) fmt::print(stderr, "notice: {}\n", line);
+    if (samples < standard_error_samples)
+        fmt::print(stderr, "notice: fewer than {} samples: no standard-error layer\n",
+                   standard_error_samples);
+    fmt::print(stderr, "{}\n", backend.description());
+    fmt::print(stderr, "{} x {}, {} samples, {} triangles, {} lights, effects: {}\n",
+               settings.width, settings.height, samples, scene.triangles.size(),
+               settings.light_count, fmt::join(effect_names(scene.effects), " "));
+    fmt::print(
+        stderr,
+        "memory: scene {}, structure about {}, paths {} ({} a dispatch), film {} on the host\n",
+        megabytes(plan.scene_bytes), megabytes(plan.structure_bytes), megabytes(plan.path_bytes),
+        plan.items * QUANTUM << (2 * BLOCK_SHIFT),
+        megabytes(Film::bytes(settings.width, settings.height, samples)));
+}
+
+ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void ProgressBar::show(const Progress& progress)
+{
+    const bool is_due = is_terminal_ ? progress.seconds - last_shown_ > 0.1
+                                     : progress.fraction - last_fraction_ >= 0.1;
+    if (!is_due && progress.fraction < 1) return;
+    last_shown_ = progress.seconds;
+    last_fraction_ = progress.fraction;
+    const double rest = progress.seconds * (1 - progress.fraction) / progress.fraction;
+    const std::string text = fmt::format(
+        "{:3.0f} %  {} samples  {:.2f} Mrays/s  {} left", progress.fraction * 100, progress.samples,
+        double(progress.rays) / progress.seconds * 1e-6, duration(rest));
+    if (is_terminal_) {
+        const int filled = int(progress.fraction * 30);
+        fmt::print(stderr, "\r[{:<30}] {}   ", std::string(size_t(filled), '='), text);
+    } else {
+        fmt::print(stderr, "{}\n", text);
+    }
+    std::fflush(stderr);
+}
+
+void ProgressBar::finish()
+{
+    if (is_terminal_) fmt::print(stderr, "\n");
+}
+
+std::optional<FaultPlace> find_fault(Backend& backend, const Faults& faults, int samples)
+{
+    if (faults.count == 0) return std::nullopt;
+    const int rest = samples - faults.first_sample;
+    const WorkItem item{faults.x, faults.y, faults.first_sample, 0};
+    const int at_once = rest >= QUANTUM ? QUANTUM : 1 << (31 - __builtin_clz(unsigned(rest)));
+    std::optional<FaultPlace> place;
+    backend.trace({{&item, 1}, at_once, 0}, [&](const StageState& state) {
+        for (size_t p = 0; !place && p < size_t(state.paths); ++p)
+            if (const char* buffer = faulty_buffer(state, p))
+                place = FaultPlace{faults.x,
+                                   faults.y,
+                                   faults.first_sample + int(p),
+                                   state.bounce,
+                                   stage_names[state.stage],
+                                   buffer};
+    });
+    return place;
+}
+
+std::string scene_hash(const SceneData& scene)
+{
+    Sha256 hash;
+#define ADD_BUFFER(type, name) hash.add(scene.name.data(), scene.name.size() * sizeof(type));
+    SCENE_BUFFERS(ADD_BUFFER)
+    return hash.finish();
+}
+
+std::string json_report(const RenderCommand& command, const SceneData& scene,
+                        const Backend& backend, const RenderResult& result,
+                        const image::Picture& picture, const std::optional<FaultPlace>& fault)
+{
+    const Statistics& statistics = result.statistics;
+    json layers = json::object();
+    for (const image::Layer& layer : picture.layers)
+        layers[layer.name.empty() ? "beauty" : layer.name] = layer_hash(layer);
+    json report = {
+        {"program", "diptych " DIPTYCH_VERSION},
+        {"scene", command.scene.scene.empty() ? "demo" : command.scene.scene},
+        {"backend", command.device.backend},
+        {"device", backend.description()},
+        {"width", picture.width},
+        {"height", picture.height},
+        {"samples", command.scene.samples},
+        {"complete", result.is_complete},
+        {"render", result.seconds},
+        {"setup", statistics.setup_seconds},
+        {"stage_seconds", statistics.stage_seconds},
+        {"rays", statistics.rays},
+        {"shadow_rays", statistics.shadow_rays},
+        {"paths", statistics.paths},
+        {"memory",
+         {{"scene", result.plan.scene_bytes},
+          {"structure", result.plan.structure_bytes},
+          {"paths", result.plan.path_bytes},
+          {"film", Film::bytes(picture.width, picture.height, command.scene.samples)}}},
+        {"dispatch_paths", result.plan.items * QUANTUM << (2 * BLOCK_SHIFT)},
+        {"effects", effect_names(scene.effects)},
+        {"degenerate_triangles", scene.degenerate_triangles},
+        {"notices", scene.notices},
+        {"dropped_samples", result.film.faults().count},
+        {"sha256", layers},
+    };
+    if (fault)
+        report["first_dropped"] = {{"x", fault->x},           {"y", fault->y},
+                                   {"sample", fault->sample}, {"bounce", fault->bounce},
+                                   {"stage", fault->stage},   {"buffer", fault->buffer}};
+    return report.dump();
+}
+
+void add_metadata(image::Picture& picture, const RenderCommand& command, const SceneData& scene,
+                  const Backend& backend, const RenderResult& result)
+{
+    picture.metadata["program"] = "diptych " DIPTYCH_VERSION;
+    picture.metadata["scene_sha256"] = scene_hash(scene);
+    picture.metadata["backend"] = command.device.backend;
+    picture.metadata["samples"] = std::to_string(command.scene.samples);
+    if (command.is_reproducible) return;
+    picture.metadata["device"] = backend.description();
+    picture.metadata["seconds"] = fmt::format("{:.3f}", result.seconds);
+    picture.metadata["command_line"] = command.command_line;
+}
+
+}  // namespace diptych

@@ -1,0 +1,200 @@
+#include "host/commands/scene_flags.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace diptych {
+namespace {
+
+constexpr int largest_side = 65535;
+constexpr int most_samples = 1 << 24;
+
+[[noreturn]] void refuse(const std::string& flag, const std::string& text,
+                         const std::string& remedy)
+{
+    throw std::runtime_error(fmt::format("{} {}: {}", flag, text, remedy));
+}
+
+template<class Number>
+bool parse_number(std::string_view text, Number& value)
+{
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size();
+}
+
+void parse_vector(const std::string& flag, const std::string& text, float (&out)[3])
+{
+    std::string_view rest = text;
+    for (int k = 0; k < 3; ++k) {
+        const size_t comma = k < 2 ? rest.find(',') : rest.size();
+        if (comma == std::string_view::npos || !parse_number(rest.substr(0, comma), out[k]) ||
+            !std::isfinite(out[k]))
+            refuse(flag, text, "not a point; give three finite numbers, as 1,2.5,-3");
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+}
+
+int parse_bounces(const std::string& text)
+{
+    if (text == "none") return BOUNCES_UNLIMITED;
+    int bounces = 0;
+    if (!parse_number(text, bounces) || bounces < 0 || bounces > 1000000)
+        refuse("--bounces", text, "give a number of scattering events from 0 to 1000000, or none");
+    return bounces;
+}
+
+int parse_filter(const std::string& text)
+{
+    if (text == "box") return FILTER_BOX;
+    if (text == "blackman-harris") return FILTER_BLACKMAN_HARRIS;
+    refuse("--filter", text, "no such filter; use blackman-harris or box");
+}
+
+LoadOptions load_options_from(const SceneFlags& flags)
+{
+    LoadOptions load = flags.load;
+    std::tie(load.width, load.height) = parse_size(flags.size);
+    if (flags.eye.empty() != flags.target.empty())
+        throw std::runtime_error("--eye and --target: one is missing; give both or none");
+    if (!flags.eye.empty()) {
+        load.has_view = true;
+        parse_vector("--eye", flags.eye, load.eye);
+        parse_vector("--target", flags.target, load.target);
+        parse_vector("--up", flags.up, load.up);
+        if (load.eye[0] == load.target[0] && load.eye[1] == load.target[1] &&
+            load.eye[2] == load.target[2])
+            refuse("--target", flags.target, "the same point as --eye; move one of them");
+    }
+    if (!(flags.fov_degrees > 0 && flags.fov_degrees < 180))
+        refuse("--fov", fmt::format("{}", flags.fov_degrees),
+               "not a field of view; give degrees between 0 and 180");
+    load.fov = float(flags.fov_degrees * std::numbers::pi / 180);
+    load.environment_rotation = float(flags.environment_rotation_degrees * std::numbers::pi / 180);
+    if (!(load.environment_scale >= 0 && std::isfinite(load.environment_scale)))
+        refuse("--env-scale", fmt::format("{}", load.environment_scale),
+               "give a finite factor, 0 or more");
+    return load;
+}
+
+}  // namespace
+
+std::pair<int, int> parse_size(const std::string& text)
+{
+    int width = 0, height = 0;
+    const size_t x = text.find('x');
+    if (x == std::string::npos || !parse_number(std::string_view(text).substr(0, x), width) ||
+        !parse_number(std::string_view(text).substr(x + 1), height))
+        refuse("--size", text, "not a size; give width and height in pixels, as 640x480");
+    if (width < 1 || height < 1 || width > largest_side || height > largest_side ||
+        std::int64_t(width) * height > (std::int64_t(1) << 28))
+        refuse("--size", text,
+               fmt::format("out of range; sides from 1 to {}, at most 2^28 pixels", largest_side));
+    return {width, height};
+}
+
+size_t parse_bytes(const std::string& flag, const std::string& text)
+{
+    double value = 0;
+    std::string_view number = text;
+    double unit = 1;
+    if (!number.empty()) {
+        const size_t k = std::string_view("KMG").find(number.back());
+        if (k != std::string_view::npos) {
+            unit = std::ldexp(1.0, 10 * int(k + 1));
+            number.remove_suffix(1);
+        }
+    }
+    if (!parse_number(number, value) || !(value > 0) || value * unit > 1e15)
+        refuse(flag, text, "not an amount of memory; give bytes, or 512M, 2G");
+    return size_t(value * unit);
+}
+
+void add_scene_flags(CLI::App& app, SceneFlags& flags)
+{
+    app.add_option("SCENE", flags.scene,
+                   "glTF 2.0 file (.gltf or .glb); without it, the demo scene");
+    app.add_option("--size", flags.size, "Picture size, WxH in pixels")->capture_default_str();
+    app.add_option("--samples", flags.samples, "Samples a pixel")->capture_default_str();
+    app.add_option("--seed", flags.seed, "Another seed is another, independent noise")
+        ->capture_default_str();
+    app.add_option("--bounces", flags.bounces,
+                   "Scattering events of a path: 0 shows emission alone, none has no limit")
+        ->capture_default_str();
+    app.add_option("--filter", flags.filter, "Pixel filter: blackman-harris or box")
+        ->capture_default_str();
+    app.add_option("--camera", flags.load.camera, "Camera of the scene, by name or number");
+    app.add_option("--eye", flags.eye, "Look from this point, x,y,z (with --target)");
+    app.add_option("--target", flags.target, "Look at this point, x,y,z");
+    app.add_option("--up", flags.up, "Upward direction for --eye, x,y,z")->capture_default_str();
+    app.add_option("--fov", flags.fov_degrees, "Vertical field of view for --eye, degrees")
+        ->capture_default_str();
+    app.add_option(
+        "--env", flags.load.environment,
+        "Environment: a latitude-longitude HDR or EXR file, or none. Without the flag, a "
+        "neutral sky lights a scene that has no light");
+    app.add_option("--env-rotation", flags.environment_rotation_degrees,
+                   "Turns the environment about +Y, degrees")
+        ->capture_default_str();
+    app.add_option("--env-scale", flags.load.environment_scale, "Multiplies its radiance")
+        ->capture_default_str();
+    app.add_flag("--allow-outside", flags.load.allow_outside,
+                 "Let the scene name files outside its own folder");
+}
+
+void add_device_flags(CLI::App& app, DeviceFlags& flags)
+{
+    app.add_option("--backend", flags.backend,
+                   "cpu (Embree, vectorised), opencl, twin (what OpenCL runs, as C++) or double")
+        ->capture_default_str();
+    app.add_option("--device", flags.options.device,
+                   "OpenCL device, by number or part of its name (see diptych devices)");
+    app.add_option("--threads", flags.options.threads, "Threads; 0: as many as the machine has")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
+    app.add_option("--memory", flags.memory,
+                   "Memory for path state on the device, as 512M; sets how many paths fly at once")
+        ->capture_default_str();
+    app.add_option("--launch-ms", flags.options.launch_milliseconds,
+                   "OpenCL: keep each kernel launch below this many milliseconds")
+        ->capture_default_str()
+        ->check(CLI::Range(1.0, 100000.0));
+    app.add_flag(
+        "--fast-math", flags.options.fast_math,
+        "OpenCL: allow contraction and native functions; pictures no longer match to the bit");
+    app.add_flag("--debug-kernels", flags.options.debug_kernels,
+                 "Run twin from kernels built for a debugger; the same picture, slowly");
+}
+
+SceneData load_from_flags(const SceneFlags& flags)
+{
+    const LoadOptions load = load_options_from(flags);
+    if (flags.samples < 1 || flags.samples > most_samples)
+        refuse("--samples", std::to_string(flags.samples),
+               fmt::format("out of range; give 1 to {}", most_samples));
+    const int bounces = parse_bounces(flags.bounces);
+    const int filter = parse_filter(flags.filter);
+    SceneData scene = flags.scene.empty() ? demo_scene(load) : load_scene(flags.scene, load);
+    Settings& settings = scene.settings.at(0);
+    settings.seed = flags.seed;
+    settings.max_bounces = bounces;
+    settings.filter = filter;
+    settings.width = load.width;
+    settings.height = load.height;
+    return scene;
+}
+
+BackendOptions options_from_flags(const DeviceFlags& flags)
+{
+    BackendOptions options = flags.options;
+    options.memory_bytes = parse_bytes("--memory", flags.memory);
+    if (options.debug_kernels && flags.backend != "twin")
+        throw std::runtime_error("--debug-kernels: only for --backend twin; add that flag");
+    return options;
+}
+
+}  // namespace diptych

@@ -1,0 +1,47 @@
+// The flags that say which scene, seen how, on which device: shared by all commands that take a
+// scene.
+#pragma once
+
+#include "backends/backend.hpp"
+#include "host/scene/load.hpp"
+
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace diptych {
+
+struct SceneFlags {
+    std::string scene;  // empty: the demo scene
+    LoadOptions load;
+    std::string size = "512x512";
+    std::string eye, target, up = "0,1,0";
+    double fov_degrees = 45;
+    double environment_rotation_degrees = 0;
+    int samples = 64;
+    unsigned seed = 1;
+    std::string bounces = "64";
+    std::string filter = "blackman-harris";
+};
+
+struct DeviceFlags {
+    std::string backend = "cpu";
+    BackendOptions options;
+    std::string memory = "512M";
+};
+
+void add_scene_flags(CLI::App& app, SceneFlags& flags);
+void add_device_flags(CLI::App& app, DeviceFlags& flags);
+
+// Checks what the flags say and loads the scene, settings filled in. Throws std::runtime_error.
+SceneData load_from_flags(const SceneFlags& flags);
+BackendOptions options_from_flags(const DeviceFlags& flags);
+
+// "640x480", "512M", "1,2.5,3": throw std::runtime_error that names the flag.
+std::pair<int, int> parse_size(const std::string& text);
+size_t parse_bytes(const std::string& flag, const std::string& text);
+
+}  // namespace diptych
