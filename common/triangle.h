@@ -22,12 +22,14 @@ typedef struct {
     float v;  // weight of the third
 } TriangleHit;
 
-// The components in cyclic order such that `axis` comes last.
+// The components in cyclic order such that `axis` comes last. Whole vectors are chosen: choosing
+// single components, compilers for GPUs index the vector in memory.
 SHARED float3 triangle_axes(float3 v, int axis)
 {
-    return make_float3(axis == 0 ? v.y : (axis == 1 ? v.z : v.x),
-                       axis == 0 ? v.z : (axis == 1 ? v.x : v.y),
-                       axis == 0 ? v.x : (axis == 1 ? v.y : v.z));
+    const float3 x_last = make_float3(v.y, v.z, v.x);
+    const float3 y_last = make_float3(v.z, v.x, v.y);
+    const float3 chosen = axis == 1 ? y_last : v;
+    return axis == 0 ? x_last : chosen;
 }
 
 // The direction need not have unit length; it must not be zero.
