@@ -2,6 +2,7 @@
 #include "host/image/picture_guard.hpp"
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/half.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -38,9 +39,14 @@ std::string reason(const std::string& path, std::string text)
 
 // Where the stored pixels lie in the picture that a viewer shows.
 struct Window {
-    int x = 0, y = 0;           // of the first stored pixel, in the picture
-    int width = 0, height = 0;  // of the picture
+    int64_t x = 0, y = 0;           // of the first stored pixel, in the picture
+    int64_t width = 0, height = 0;  // of the picture
 };
+
+uint64_t shown_pixels(const ImageSpec& spec)
+{
+    return uint64_t(spec.full_width) * uint64_t(spec.full_height);
+}
 
 // Checked before anything is allocated. No encoder squeezes more than some thousand bytes into one,
 // so a small file with a huge header is refused whatever the limits say.
@@ -52,29 +58,33 @@ void check_size(const std::string& path, const ImageSpec& spec, const ReadLimits
              fmt::format("its header gives {} x {} pixels of {} channels; the file is corrupt",
                          spec.width, spec.height, spec.nchannels));
     const uint64_t stored = uint64_t(spec.width) * uint64_t(spec.height);
-    const uint64_t shown = uint64_t(spec.full_width) * uint64_t(spec.full_height);
-    const uint64_t pixels = std::max(stored, shown);
+    const uint64_t pixels = std::max(stored, shown_pixels(spec));
     if (pixels > limits.pixels || pixels > limits.values / uint64_t(spec.nchannels))
         fail(path,
              fmt::format(
                  "{} x {} pixels of {} channels are more than the {} pixels or {} values allowed",
                  std::max(spec.width, spec.full_width), std::max(spec.height, spec.full_height),
                  spec.nchannels, limits.pixels, limits.values));
-    constexpr uint64_t LARGEST_RATIO = 20000, ALWAYS_ALLOWED = 64u << 20;
-    const uint64_t bytes = stored * spec.pixel_bytes(true);
+    constexpr uint64_t LARGEST_RATIO = 4000, STORED_FREELY = 64u << 20, SHOWN_FREELY = 1u << 30;
     std::error_code error;
     const uint64_t file_bytes = fs::file_size(path, error);
-    if (bytes > ALWAYS_ALLOWED && !error && bytes / LARGEST_RATIO > file_bytes)
+    const auto is_bomb = [&](uint64_t count, uint64_t freely) {
+        const uint64_t bytes = count * spec.pixel_bytes(true);
+        return bytes > freely && !error && bytes / LARGEST_RATIO > file_bytes;
+    };
+    if (is_bomb(stored, STORED_FREELY) || is_bomb(shown_pixels(spec), SHOWN_FREELY))
         fail(path,
              fmt::format("its header announces {} x {} pixels, but the file has only {} bytes",
-                         spec.width, spec.height, file_bytes));
+                         std::max(spec.width, spec.full_width),
+                         std::max(spec.height, spec.full_height), file_bytes));
     if (spec.deep) fail(path, "holds deep pixels, which are not supported; flatten it first");
     if (spec.depth > 1) fail(path, "holds a volume, not a picture");
 }
 
 Window window_of(const ImageSpec& spec)
 {
-    return {spec.x - spec.full_x, spec.y - spec.full_y, spec.full_width, spec.full_height};
+    return {int64_t(spec.x) - spec.full_x, int64_t(spec.y) - spec.full_y, spec.full_width,
+            spec.full_height};
 }
 
 struct ChannelName {
@@ -146,51 +156,49 @@ public:
     BandReader(const std::string& path, ImageInput& input, int part, const ImageSpec& spec)
         : path_(path), input_(input), part_(part), spec_(spec)
     {
-        for (int c = 0; c < spec.nchannels; ++c) has_whole_ |= is_whole_number(spec, c);
+        for (int c = 0; c < spec.nchannels; ++c) {
+            has_whole_ |= is_whole_number(spec, c);
+            offsets_.push_back(spec.pixel_bytes(0, c, true));
+            is_half_.push_back(spec.channelformat(c) == TypeDesc::HALF);
+        }
+        pixel_bytes_ = has_whole_ ? spec.pixel_bytes(true) : spec.nchannels * sizeof(float);
     }
 
     int rows() const { return spec_.tile_width ? spec_.tile_height : 64; }
 
     void read(int begin, int end)
     {
-        const size_t pixels = size_t(spec_.width) * (end - begin);
-        floats_.resize(pixels * spec_.nchannels);
-        if (!has_whole_) return read_as(begin, end, TypeDesc::FLOAT, floats_.data());
-        native_.resize(pixels * spec_.pixel_bytes(true));
-        read_as(begin, end, TypeDesc::UNKNOWN, native_.data());
+        bytes_.resize(size_t(spec_.width) * (end - begin) * pixel_bytes_);
+        const TypeDesc type = has_whole_ ? TypeDesc::UNKNOWN : TypeDesc::FLOAT;  // as stored
+        const int y0 = spec_.y + begin, y1 = spec_.y + end, x1 = spec_.x + spec_.width;
+        const bool good =
+            spec_.tile_width
+                ? input_.read_tiles(part_, 0, spec_.x, x1, y0, y1, spec_.z, spec_.z + 1, 0,
+                                    spec_.nchannels, type, bytes_.data())
+                : input_.read_scanlines(part_, 0, y0, y1, spec_.z, 0, spec_.nchannels, type,
+                                        bytes_.data());
+        if (!good) fail(path_, "corrupt or cut short (" + reason(path_, input_.geterror()) + ")");
     }
 
     float number(size_t pixel, int c) const
     {
-        if (!has_whole_) return floats_[pixel * spec_.nchannels + c];
-        const char* at = channel_at(pixel, c);
-        float value = 0;
-        OIIO::convert_types(spec_.channelformat(c), at, TypeDesc::FLOAT, &value, 1);
-        return value;
+        if (!has_whole_) return value<float>(pixel * pixel_bytes_ + c * sizeof(float));
+        const size_t at = pixel * pixel_bytes_ + offsets_[c];
+        return is_half_[c] ? float(value<half>(at)) : value<float>(at);
     }
 
     uint32_t whole(size_t pixel, int c) const
     {
-        uint32_t value;
-        std::memcpy(&value, channel_at(pixel, c), sizeof value);
-        return value;
+        return value<uint32_t>(pixel * pixel_bytes_ + offsets_[c]);
     }
 
 private:
-    const char* channel_at(size_t pixel, int c) const
+    template<class T>
+    T value(size_t at) const
     {
-        return native_.data() + pixel * spec_.pixel_bytes(true) + spec_.pixel_bytes(0, c, true);
-    }
-
-    void read_as(int begin, int end, TypeDesc type, void* out)
-    {
-        const int y0 = spec_.y + begin, y1 = spec_.y + end;
-        const bool good =
-            spec_.tile_width
-                ? input_.read_tiles(part_, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z,
-                                    spec_.z + 1, 0, spec_.nchannels, type, out)
-                : input_.read_scanlines(part_, 0, y0, y1, spec_.z, 0, spec_.nchannels, type, out);
-        if (!good) fail(path_, "corrupt or cut short (" + reason(path_, input_.geterror()) + ")");
+        T result;
+        std::memcpy(&result, bytes_.data() + at, sizeof result);
+        return result;
     }
 
     const std::string& path_;
@@ -198,9 +206,31 @@ private:
     int part_;
     const ImageSpec& spec_;
     bool has_whole_ = false;
-    std::vector<float> floats_;
-    std::vector<char> native_;
+    size_t pixel_bytes_ = 0;
+    std::vector<size_t> offsets_;  // of each channel in a pixel as stored
+    std::vector<bool> is_half_;
+    std::vector<char> bytes_;
 };
+
+// Puts one stored row in its place, cropped to the picture.
+void copy_row(const BandReader& band, size_t first_pixel, int64_t y, const Window& window,
+              const ImageSpec& spec, const std::vector<Slot>& slots, Picture& picture)
+{
+    const int64_t first = std::max<int64_t>(0, -window.x);
+    const int64_t last = std::min<int64_t>(spec.width, window.width - window.x);
+    for (int c = 0; c < spec.nchannels; ++c) {
+        Layer& layer = picture.layers[slots[c].layer];
+        const size_t stride = layer.channels.size();
+        const bool whole = is_whole_number(spec, c);
+        for (int64_t x = first; x < last; ++x) {
+            const size_t to = size_t(y * window.width + window.x + x) * stride + slots[c].channel;
+            if (whole)
+                layer.ids[to] = band.whole(first_pixel + size_t(x), c);
+            else
+                layer.pixels[to] = band.number(first_pixel + size_t(x), c);
+        }
+    }
+}
 
 void read_part(const std::string& path, ImageInput& input, int part, const ImageSpec& spec,
                Picture& picture)
@@ -214,28 +244,13 @@ void read_part(const std::string& path, ImageInput& input, int part, const Image
             allocate(picture.layers[slots[c].layer], is_whole_number(spec, c), window);
 
     BandReader band(path, input, part, spec);
-    const int first_column = std::max(0, -window.x);
-    const int last_column = std::min<int64_t>(spec.width, int64_t(window.width) - window.x);
     for (int begin = 0; begin < spec.height; begin += band.rows()) {
         const int end = std::min(spec.height, begin + band.rows());
         band.read(begin, end);
         for (int row = begin; row < end; ++row) {
-            const int64_t y = int64_t(window.y) + row;
+            const int64_t y = window.y + row;
             if (y < 0 || y >= window.height) continue;
-            for (int c = 0; c < spec.nchannels; ++c) {
-                Layer& layer = picture.layers[slots[c].layer];
-                const size_t stride = layer.channels.size();
-                const size_t from = size_t(row - begin) * spec.width;
-                const int64_t to =
-                    (y * window.width + window.x) * int64_t(stride) + int64_t(slots[c].channel);
-                for (int x = first_column; x < last_column; ++x) {
-                    const size_t at = size_t(to + int64_t(x) * int64_t(stride));
-                    if (is_whole_number(spec, c))
-                        layer.ids[at] = band.whole(from + x, c);
-                    else
-                        layer.pixels[at] = band.number(from + x, c);
-                }
-            }
+            copy_row(band, size_t(row - begin) * spec.width, y, window, spec, slots, picture);
         }
     }
 }
@@ -283,6 +298,7 @@ Picture read_all(const std::string& path, const ReadLimits& limits)
     const OpenPicture opened = open(path, limits);
     ImageInput* const input = opened.input.get();
     Picture picture;
+    ReadLimits left = limits;
     const ImageSpec first = input->spec();
     // Only an EXR file's further parts are layers of the same picture; elsewhere they are frames,
     // pages and thumbnails.
@@ -293,7 +309,8 @@ Picture read_all(const std::string& path, const ReadLimits& limits)
         if (part > 0 && (spec.full_width != first.full_width ||
                          spec.full_height != first.full_height || spec.deep))
             continue;
-        check_size(path, spec, limits);
+        check_size(path, spec, left);
+        left.values -= shown_pixels(spec) * uint64_t(spec.nchannels);
         read_part(path, *input, part, spec, picture);
     }
     (void)input->geterror();

@@ -3,6 +3,7 @@
 #include "host/image/image.hpp"
 #include "tests/host/image/scratch_folder.hpp"
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -95,6 +96,23 @@ TEST(Guard, ChecksTheSizeFromTheHeader)
             << name;
     }
     EXPECT_NE(outcome(folder / "x.exr", {.values = 40000}).find("4 channels"), std::string::npos);
+}
+
+// One stored pixel in a window of 16384 x 16384: within the limits, but nothing that 300 bytes
+// hold.
+TEST(Guard, RefusesAWindowThatTheFileCannotFill)
+{
+    const ScratchFolder folder;
+    OIIO::ImageSpec spec(1, 1, 4, OIIO::TypeDesc::FLOAT);
+    spec.full_width = spec.full_height = 16384;
+    const auto output = OIIO::ImageOutput::create("openexr");
+    ASSERT_TRUE(output->open(folder / "window.exr", spec));
+    const float pixel[4] = {1, 1, 1, 1};
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixel));
+    ASSERT_TRUE(output->close());
+    EXPECT_NE(
+        outcome(folder / "window.exr", {}).find("16384 x 16384 pixels, but the file has only"),
+        std::string::npos);
 }
 
 // Every file cut at many places, and with each of many bytes changed.
