@@ -7,7 +7,9 @@
 #include "kernels_cl/faults.h"
 
 #define TEXT(words) #words
+// clang-format off
 #define STAGE_HEADER(stage) TEXT(common/stages/stage.h)
+// clang-format on
 #include STAGE_HEADER(STAGE)
 
 #define ENTRY_NAME_(stage) stage##_entry
