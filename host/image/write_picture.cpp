@@ -142,8 +142,8 @@ OIIO::ImageSpec exr_spec(const Picture& picture, const WriteOptions& options)
             ++spec.nchannels;
         }
     }
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");  // otherwise OpenImageIO adds the present second
+    spec.attribute("compression", "zip:1");  // level 4 takes half as long again for 5 % less
+    spec.attribute("DateTime", "");          // otherwise OpenImageIO adds the present second
     for (const auto& [name, value] : picture.metadata) spec.attribute(name, value);
     return spec;
 }
