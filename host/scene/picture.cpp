@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <fstream>
 #include <limits>
 #include <memory>
+#include <unistd.h>
 
 namespace diptych {
 namespace {
@@ -139,16 +142,9 @@ Picture read_pixels(OIIO::ImageInput& input, const std::string& where, size_t ma
     return picture;
 }
 
-OIIO::ImageSpec reading_hints()
-{
-    OIIO::ImageSpec hints;
-    hints.attribute("oiio:UnassociatedAlpha", 1);  // glTF: straight alpha
-    hints.attribute("oiio:reorient", 0);
-    return hints;
-}
-
-// The file extension that goes with the first bytes: OpenImageIO picks a reader of memory by name.
-const char* kind_of(std::span<const std::uint8_t> b)
+// The reader for an image that begins with these bytes. Only formats that scenes have reason to
+// hold: some of OpenImageIO's other readers crash on broken files (TGA does).
+const char* reader_for(std::span<const std::uint8_t> b)
 {
     const auto starts = [&](std::initializer_list<int> magic, size_t at = 0) {
         return b.size() >= at + magic.size() &&
@@ -170,12 +166,6 @@ const char* kind_of(std::span<const std::uint8_t> b)
     if (starts({'#', '?'})) {
         return "hdr";
     }
-    if (starts({'I', 'I', 42, 0}) || starts({'M', 'M', 0, 42})) {
-        return "tiff";
-    }
-    if (starts({'B', 'M'})) {
-        return "bmp";
-    }
     return nullptr;
 }
 
@@ -184,42 +174,82 @@ bool is_ktx2(std::span<const std::uint8_t> b)
     return b.size() >= 7 && b[0] == 0xab && std::equal(b.begin() + 1, b.begin() + 7, "KTX 20");
 }
 
+// libpng writes its complaints to standard error, where an error of ours is one line and a warning
+// about a colour profile is noise. Nothing else can be told to it through OpenImageIO.
+class QuietStandardError {
+public:
+    QuietStandardError() : saved_(dup(STDERR_FILENO))
+    {
+        const int nothing = open("/dev/null", O_WRONLY);
+        if (nothing < 0) {
+            return;
+        }
+        dup2(nothing, STDERR_FILENO);
+        close(nothing);
+    }
+    ~QuietStandardError()
+    {
+        if (saved_ < 0) {
+            return;
+        }
+        dup2(saved_, STDERR_FILENO);
+        close(saved_);
+    }
+    QuietStandardError(const QuietStandardError&) = delete;
+    QuietStandardError& operator=(const QuietStandardError&) = delete;
+
+private:
+    int saved_;
+};
+
+// `head` is how the image begins; it comes from the file `name`, or from `proxy` if there is one.
+Picture read_any(std::span<const std::uint8_t> head, const std::string& name, void* proxy,
+                 const std::string& where, size_t max_pixels)
+{
+    if (is_ktx2(head)) {
+        throw SceneError(where + ": is a KTX2 image (KHR_texture_basisu), which cannot be read; "
+                                 "export it with PNG or JPEG images");
+    }
+    const char* reader = reader_for(head);
+    if (!reader) {
+        throw SceneError(where + ": its first bytes are of no image format that is read here; use "
+                                 "PNG, JPEG, WebP, OpenEXR or Radiance HDR");
+    }
+    OIIO::ImageSpec hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1);  // glTF: straight alpha
+    hints.attribute("oiio:reorient", 0);
+    if (proxy) {
+        hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    }
+    const QuietStandardError quiet;
+    auto input = OIIO::ImageInput::create(reader);
+    OIIO::ImageSpec spec;
+    if (!input || !input->open(name, spec, hints)) {
+        throw SceneError(fmt::format("{}: cannot be decoded ({}); replace the image", where,
+                                     one_line(input ? input->geterror() : OIIO::geterror())));
+    }
+    return read_pixels(*input, where, max_pixels);
+}
+
 }  // namespace
 
 Picture read_picture(const std::filesystem::path& file, const std::string& where, size_t max_pixels)
 {
-    const OIIO::ImageSpec hints = reading_hints();
-    auto input = OIIO::ImageInput::open(file.string(), &hints);
-    if (!input) {
-        throw SceneError(fmt::format("{}: cannot be read as an image ({}); replace the file", where,
-                                     one_line(OIIO::geterror())));
+    std::array<std::uint8_t, 16> head{};
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) {
+        throw SceneError(where + ": cannot be opened; check its name and permissions");
     }
-    return read_pixels(*input, where, max_pixels);
+    stream.read(reinterpret_cast<char*>(head.data()), head.size());
+    const auto size = size_t(std::max<std::streamsize>(stream.gcount(), 0));
+    return read_any(std::span(head).first(size), file.string(), nullptr, where, max_pixels);
 }
 
 Picture read_picture(std::span<const std::uint8_t> bytes, const std::string& where,
                      size_t max_pixels)
 {
-    const char* kind = kind_of(bytes);
-    if (is_ktx2(bytes)) {
-        throw SceneError(where + ": is a KTX2 image (KHR_texture_basisu), which cannot be read; "
-                                 "export it with PNG or JPEG images");
-    }
-    if (!kind) {
-        throw SceneError(where + ": its first bytes are of no known image format; use PNG or JPEG");
-    }
     OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-    // The reader is chosen by the bytes, not by a name, and gets them through the hints.
-    OIIO::ImageSpec hints = reading_hints();
-    void* proxy = &memory;
-    hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    auto input = OIIO::ImageInput::create(kind);
-    OIIO::ImageSpec spec;
-    if (!input || !input->open(std::string("memory.") + kind, spec, hints)) {
-        throw SceneError(fmt::format("{}: cannot be decoded ({}); replace the image", where,
-                                     one_line(input ? input->geterror() : OIIO::geterror())));
-    }
-    return read_pixels(*input, where, max_pixels);
+    return read_any(bytes, "memory", &memory, where, max_pixels);
 }
 
 float srgb_decode(float encoded)
