@@ -32,7 +32,7 @@ struct Picture {
     int width = 0;
     int height = 0;
     std::vector<Layer> layers;
-    std::map<std::string, std::string> metadata;
+    std::map<std::string, std::string> metadata;  // EXR only; "DateTime" is stored as capDate
     Encoding encoding = Encoding::Linear;
 };
 
