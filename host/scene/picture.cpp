@@ -1,5 +1,6 @@
 #include "host/scene/picture.hpp"
 
+#include "host/scene/image_metadata.hpp"
 #include "host/scene/scene_error.hpp"
 
 #include <OpenImageIO/filesystem.h>
@@ -10,6 +11,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <unistd.h>
@@ -144,7 +146,7 @@ Picture read_pixels(OIIO::ImageInput& input, const std::string& where, size_t ma
 
 // The reader for an image that begins with these bytes. Only formats that scenes have reason to
 // hold: some of OpenImageIO's other readers crash on broken files (TGA does).
-const char* reader_for(std::span<const std::uint8_t> b)
+std::string reader_for(std::span<const std::uint8_t> b)
 {
     const auto starts = [&](std::initializer_list<int> magic, size_t at = 0) {
         return b.size() >= at + magic.size() &&
@@ -166,7 +168,7 @@ const char* reader_for(std::span<const std::uint8_t> b)
     if (starts({'#', '?'})) {
         return "hdr";
     }
-    return nullptr;
+    return "";
 }
 
 bool is_ktx2(std::span<const std::uint8_t> b)
@@ -202,54 +204,57 @@ private:
     int saved_;
 };
 
-// `head` is how the image begins; it comes from the file `name`, or from `proxy` if there is one.
-Picture read_any(std::span<const std::uint8_t> head, const std::string& name, void* proxy,
-                 const std::string& where, size_t max_pixels)
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file, const std::string& where)
 {
-    if (is_ktx2(head)) {
-        throw SceneError(where + ": is a KTX2 image (KHR_texture_basisu), which cannot be read; "
-                                 "export it with PNG or JPEG images");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) {
+        throw SceneError(where + ": cannot be opened; check its name and permissions");
     }
-    const char* reader = reader_for(head);
-    if (!reader) {
-        throw SceneError(where + ": its first bytes are of no image format that is read here; use "
-                                 "PNG, JPEG, WebP, OpenEXR or Radiance HDR");
-    }
-    OIIO::ImageSpec hints;
-    hints.attribute("oiio:UnassociatedAlpha", 1);  // glTF: straight alpha
-    hints.attribute("oiio:reorient", 0);
-    if (proxy) {
-        hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    }
-    const QuietStandardError quiet;
-    auto input = OIIO::ImageInput::create(reader);
-    OIIO::ImageSpec spec;
-    if (!input || !input->open(name, spec, hints)) {
-        throw SceneError(fmt::format("{}: cannot be decoded ({}); replace the image", where,
-                                     one_line(input ? input->geterror() : OIIO::geterror())));
-    }
-    return read_pixels(*input, where, max_pixels);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace
 
 Picture read_picture(const std::filesystem::path& file, const std::string& where, size_t max_pixels)
 {
-    std::array<std::uint8_t, 16> head{};
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) {
-        throw SceneError(where + ": cannot be opened; check its name and permissions");
-    }
-    stream.read(reinterpret_cast<char*>(head.data()), head.size());
-    const auto size = size_t(std::max<std::streamsize>(stream.gcount(), 0));
-    return read_any(std::span(head).first(size), file.string(), nullptr, where, max_pixels);
+    return read_picture(read_bytes(file, where), where, max_pixels);
 }
 
 Picture read_picture(std::span<const std::uint8_t> bytes, const std::string& where,
                      size_t max_pixels)
 {
-    OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-    return read_any(bytes, "memory", &memory, where, max_pixels);
+    if (is_ktx2(bytes)) {
+        throw SceneError(where + ": is a KTX2 image (KHR_texture_basisu), which cannot be read; "
+                                 "export it with PNG or JPEG images");
+    }
+    const std::string reader = reader_for(bytes);
+    if (reader.empty()) {
+        throw SceneError(where + ": its first bytes are of no image format that is read here; use "
+                                 "PNG, JPEG, WebP, OpenEXR or Radiance HDR");
+    }
+    std::vector<std::uint8_t> bare;
+    if (reader == "png") {
+        bare = png_without_metadata(bytes);
+    }
+    if (reader == "jpeg") {
+        bare = jpeg_without_metadata(bytes);
+    }
+    const auto stored = bare.empty() ? bytes : std::span<const std::uint8_t>(bare);
+
+    OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(stored.data()), stored.size());
+    void* proxy = &memory;
+    OIIO::ImageSpec hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1);  // glTF: straight alpha
+    hints.attribute("oiio:reorient", 0);
+    hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const QuietStandardError quiet;
+    auto input = OIIO::ImageInput::create(reader);
+    OIIO::ImageSpec spec;
+    if (!input || !input->open("memory", spec, hints)) {
+        throw SceneError(fmt::format("{}: cannot be decoded ({}); replace the image", where,
+                                     one_line(input ? input->geterror() : OIIO::geterror())));
+    }
+    return read_pixels(*input, where, max_pixels);
 }
 
 float srgb_decode(float encoded)
