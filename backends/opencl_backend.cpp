@@ -192,11 +192,12 @@ void OpenclBackend::begin(const Dispatch& dispatch)
         kernel.set(argument(SAMPLES), dispatch.samples);
         kernel.set(argument(PIXEL_SHIFT), dispatch.pixel_shift);
     }
+    // written, not filled: Oclgrind does not notice that fills initialise
     const std::vector<PlaneRow>& rows = result_rows();
     for (size_t r = 0; r < rows.size(); ++r) {
-        const bool is_id = std::strstr(rows[r].name, "_id") != nullptr;
-        queue_.fill(memory_.result_planes[r],
-                    sizeof(float) * size_t(rows[r].components) * size_t(results_), is_id ? -1 : 0);
+        const int start = std::strstr(rows[r].name, "_id") ? -1 : 0;
+        const std::vector<int> plane(size_t(rows[r].components) * size_t(results_), start);
+        queue_.write(memory_.result_planes[r], plane.size() * sizeof plane[0], plane.data());
     }
     statistics_.paths += unsigned(paths_);
 }

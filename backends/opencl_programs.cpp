@@ -81,11 +81,13 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
                           const BackendOptions& options, unsigned effects, ProgramCache& cache)
 {
     const std::string flags = program_options(device, options, effects);
+    // one after the other, for drivers whose compiler does not stand threads (Oclgrind)
+    const auto how = options.threads == 1 ? std::launch::deferred : std::launch::async;
     std::array<std::future<Built>, STAGE_COUNT> jobs;
     for (int k = 0; k < STAGE_COUNT; ++k) {
         const Stage stage = Stage(k);
         if (!is_active(stage, effects)) continue;
-        jobs[k] = std::async(std::launch::async, [&, stage] {
+        jobs[k] = std::async(how, [&, stage] {
             return build(context, device, source_for(stage, options), flags, stage_names[stage],
                          cache);
         });

@@ -1,4 +1,5 @@
-// From sources to programs on a device: only what the scene needs, in parallel, through the cache.
+// From sources to programs on a device: only what the scene needs, in parallel (unless
+// BackendOptions::threads is 1), through the cache.
 #pragma once
 
 #include "backends/backend.hpp"

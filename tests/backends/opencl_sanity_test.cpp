@@ -1,0 +1,28 @@
+// A few paths through every kernel, one program compiled after the other: CTest also runs this
+// under Oclgrind, which watches for invalid accesses, races and reads of what was never written.
+#include "tests/backends/opencl_fixture.hpp"
+
+#include "backends/opencl_backend.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace diptych;
+
+TEST(OpenclSanity, TracesAFewPixels)
+{
+    const std::vector<DeviceInfo> devices = usable_devices();
+    if (devices.empty()) GTEST_SKIP() << "no usable OpenCL device";
+    SceneData scene = lamp_scene();
+    BackendOptions options;
+    options.threads = 1;
+    for (const DeviceInfo& device : devices) {
+        options.device = std::to_string(device.index);
+        const std::unique_ptr<Backend> backend = make_opencl_backend(options);
+        backend->upload(scene);
+        Results results;
+        const std::vector<WorkItem> items = {{12, 14, 0, 0}, {20, 14, 0, 0}, {39, 23, 0, 0}};
+        backend->render({items, 2, 0}, results);
+        EXPECT_GT(results.sum_radiance[0] + results.sum_radiance[1], 0);
+        EXPECT_EQ(results.sum_alpha.size(), 3u);
+    }
+}
