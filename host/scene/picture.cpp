@@ -33,23 +33,28 @@ std::string one_line(std::string text)
     return text.empty() ? "the reason is not known" : text;
 }
 
+void check_size(const ImageSize& size, int channels, const std::string& where, size_t max_pixels)
+{
+    if (size.width == 0 || size.height == 0 || channels <= 0) {
+        throw SceneError(fmt::format("{}: an image of {} x {} pixels; replace the image", where,
+                                     size.width, size.height));
+    }
+    // The limit is meant for four channels; more of them count as more pixels.
+    const double pixels = double(size.width) * double(size.height) * std::max(channels, 4) / 4;
+    if (pixels > double(max_pixels)) {
+        throw SceneError(fmt::format("{}: an image of {} x {} pixels and {} channels is beyond the "
+                                     "limit of {} pixels; use a smaller image or raise the limit",
+                                     where, size.width, size.height, channels, max_pixels));
+    }
+}
+
 void check_spec(const OIIO::ImageSpec& spec, const std::string& where, size_t max_pixels)
 {
-    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) {
-        throw SceneError(fmt::format("{}: an image of {} x {} pixels; replace the image", where,
-                                     spec.width, spec.height));
-    }
     if (spec.depth > 1) {
         throw SceneError(where + ": a volume, not an image; replace the image");
     }
-    // The limit is meant for four channels; more of them count as more pixels.
-    const double pixels = double(spec.width) * spec.height * std::max(spec.nchannels, 4) / 4;
-    if (pixels > double(max_pixels)) {
-        throw SceneError(fmt::format("{}: an image of {} x {} pixels with {} channels is beyond "
-                                     "the limit of {} pixels; use a smaller image or raise the "
-                                     "limit",
-                                     where, spec.width, spec.height, spec.nchannels, max_pixels));
-    }
+    check_size({size_t(std::max(spec.width, 0)), size_t(std::max(spec.height, 0))}, spec.nchannels,
+               where, max_pixels);
 }
 
 // Channels in the order R, G, B, A, a grey image repeated: where each comes from, -1 for opaque.
@@ -234,9 +239,10 @@ Picture read_picture(std::span<const std::uint8_t> bytes, const std::string& whe
     }
     std::vector<std::uint8_t> bare;
     if (reader == "png") {
+        check_size(png_size(bytes), 4, where, max_pixels);
         bare = png_without_metadata(bytes);
-    }
-    if (reader == "jpeg") {
+    } else if (reader == "jpeg") {
+        check_size(jpeg_size(bytes), 4, where, max_pixels);
         bare = jpeg_without_metadata(bytes);
     }
     const auto stored = bare.empty() ? bytes : std::span<const std::uint8_t>(bare);

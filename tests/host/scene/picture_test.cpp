@@ -97,7 +97,7 @@ TEST(Picture, Limits_are_checked_before_decoding)
         read_picture(file, "wall", 99);
         FAIL();
     } catch (const SceneError& error) {
-        EXPECT_STREQ(error.what(), "wall: an image of 10 x 10 pixels with 3 channels is beyond the "
+        EXPECT_STREQ(error.what(), "wall: an image of 10 x 10 pixels and 4 channels is beyond the "
                                    "limit of 99 pixels; use a smaller image or raise the limit");
     }
 }
@@ -117,7 +117,9 @@ size_t readable(const std::string& folder, size_t& files)
     files = 0;
     for (const auto& entry : fs::recursive_directory_iterator(scenes / folder)) {
         std::string extension = entry.path().extension().string();
-        for (char& c : extension) { c = char(std::tolower(c)); }
+        for (char& c : extension) {
+            c = char(std::tolower(c));
+        }
         if (!entry.is_regular_file() || extension.empty() || extension == ".txt" ||
             extension == ".json" || extension == ".license" || extension == ".readme" ||
             extension == ".rst") {
