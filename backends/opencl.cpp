@@ -142,7 +142,7 @@ double Event::seconds() const
 }
 
 Kernel::Kernel(const Program& program, const std::string& name)
-    : device_(program.device_), at_(program.at_ + ", kernel " + name)
+    : at_(program.at_ + ", kernel " + name)
 {
     cl_int status = CL_SUCCESS;
     kernel_ = Handle<cl_kernel, clReleaseKernel>(
@@ -167,27 +167,6 @@ void Kernel::set(int index, int value)
 {
     const cl_int number = value;
     set_bytes(index, sizeof number, &number);
-}
-
-void Kernel::set_local(int index, size_t bytes) { set_bytes(index, bytes, nullptr); }
-
-size_t Kernel::largest_group() const
-{
-    size_t size = 1;
-    check(clGetKernelWorkGroupInfo(kernel_.get(), device_, CL_KERNEL_WORK_GROUP_SIZE, sizeof size,
-                                   &size, nullptr),
-          "clGetKernelWorkGroupInfo", at_);
-    return size;
-}
-
-size_t Kernel::preferred_multiple() const
-{
-    size_t size = 1;
-    check(clGetKernelWorkGroupInfo(kernel_.get(), device_,
-                                   CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE, sizeof size, &size,
-                                   nullptr),
-          "clGetKernelWorkGroupInfo", at_);
-    return size;
 }
 
 void Queue::write(const Buffer& buffer, size_t bytes, const void* data)

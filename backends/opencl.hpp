@@ -110,16 +110,12 @@ public:
 
     void set(int index, const Buffer& buffer);
     void set(int index, int value);
-    void set_local(int index, size_t bytes);
-    size_t largest_group() const;
-    size_t preferred_multiple() const;
 
 private:
     friend class Queue;
     void set_bytes(int index, size_t bytes, const void* value);
 
     Handle<cl_kernel, clReleaseKernel> kernel_;
-    cl_device_id device_ = nullptr;
     std::string at_;
 };
 

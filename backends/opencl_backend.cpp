@@ -19,7 +19,6 @@ namespace {
 // A stage's kernel, and how long its launches may be.
 struct StageKernel {
     opencl::Kernel kernel;
-    int group_size = 1;
     double seconds_per_path = 0;  // the slowest lately; 0: not measured yet
 
     // So many that a launch takes half of what is allowed; few as long as nothing is known.
@@ -61,7 +60,8 @@ private:
     void begin(const Dispatch& dispatch);
     void run(Stage stage, int count, bool is_compacted);
     int compact(int count, bool is_compacted, bool keeps_order);
-    void note(Stage stage, int paths, opencl::Event event);
+    int groups_of(int paths) const;
+    void launch(const opencl::Kernel& kernel, Stage stage, int paths, int groups);
     void collect_times();
     void download(Results& results);
     StageState state_after(Stage stage, int bounce);
@@ -77,8 +77,9 @@ private:
     DispatchMemory memory_;
     ProgramSet programs_;
     std::array<StageKernel, STAGE_COUNT> kernels_;
-    StageKernel compact_scan_;
-    StageKernel compact_write_;
+    opencl::Kernel compact_count_;
+    opencl::Kernel compact_scan_;
+    opencl::Kernel compact_write_;
 
     int paths_ = 0;  // of the dispatch that runs
     int results_ = 0;
@@ -130,22 +131,11 @@ void OpenclBackend::upload(SceneData& scene)
     if (scene.bvh_nodes.empty()) build_bvh(scene);
     scene_ = upload_scene(context_, queue_, device_, scene);
     build_kernels(scene.effects);
-    memory_ = DispatchMemory(context_, plan(scene).items, kernels_[STAGE_compact].group_size);
+    memory_ = DispatchMemory(context_, plan(scene).items, device_.group_size);
     for (int k = 0; k < STAGE_COUNT; ++k)
         if (programs_.programs[k] && k != STAGE_compact) bind_buffers(kernels_[k]);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     statistics_.setup_seconds = elapsed.count();
-}
-
-StageKernel make_kernel(const opencl::Program& program, const std::string& name)
-{
-    StageKernel stage;
-    stage.kernel = opencl::Kernel(program, name);
-    const size_t wanted = 64;
-    size_t size = 1;
-    while (2 * size <= std::min(wanted, stage.kernel.largest_group())) size *= 2;
-    stage.group_size = int(size);
-    return stage;
 }
 
 void OpenclBackend::build_kernels(unsigned effects)
@@ -155,16 +145,13 @@ void OpenclBackend::build_kernels(unsigned effects)
     for (int k = 0; k < STAGE_COUNT; ++k) {
         const std::optional<opencl::Program>& program = programs_.programs[k];
         if (program && k != STAGE_compact)
-            kernels_[k] = make_kernel(*program, std::string(stage_names[k]) + "_entry");
+            kernels_[k].kernel = opencl::Kernel(*program, std::string(stage_names[k]) + "_entry");
+        kernels_[k].seconds_per_path = 0;
     }
     const opencl::Program& compaction = *programs_.programs[STAGE_compact];
-    StageKernel& counting = kernels_[STAGE_compact];
-    counting = make_kernel(compaction, "compact_count");
-    compact_scan_ = make_kernel(compaction, "compact_scan");
-    compact_write_ = make_kernel(compaction, "compact_write");
-    // counting and writing must form the same groups
-    counting.group_size = std::min(counting.group_size, compact_write_.group_size);
-    compact_write_.group_size = counting.group_size;
+    compact_count_ = opencl::Kernel(compaction, "compact_count");
+    compact_scan_ = opencl::Kernel(compaction, "compact_scan");
+    compact_write_ = opencl::Kernel(compaction, "compact_write");
 }
 
 void OpenclBackend::bind_buffers(StageKernel& stage)
@@ -212,8 +199,7 @@ void OpenclBackend::run(Stage stage, int count, bool is_compacted)
         const int launched = std::min(count - first, runs.paths_per_launch(allowed));
         runs.kernel.set(argument(FIRST), first);
         runs.kernel.set(argument(COUNT), launched);
-        const size_t groups = size_t(launched + runs.group_size - 1) / size_t(runs.group_size);
-        note(stage, launched, queue_.launch(runs.kernel, groups, size_t(runs.group_size)));
+        launch(runs.kernel, stage, launched, groups_of(launched));
         if (runs.seconds_per_path <= 0) collect_times();
         first += launched;
     }
@@ -232,33 +218,21 @@ int OpenclBackend::compact(int count, bool is_compacted, bool keeps_order)
             rows.begin());
     }();
     const opencl::Buffer& depth = memory_.path_planes[size_t(depth_row)];
-    const int size = kernels_[STAGE_compact].group_size;
-    const int groups = (count + size - 1) / size;
-    const auto launch = [&](StageKernel& stage, int launched_groups) {
-        note(STAGE_compact, count,
-             queue_.launch(stage.kernel, size_t(launched_groups), size_t(stage.group_size)));
-    };
-    for (StageKernel* stage : {&kernels_[STAGE_compact], &compact_write_}) {
-        stage->kernel.set(0, depth);
-        stage->kernel.set(1, memory_.live[0]);
-        stage->kernel.set(2, is_compacted ? 1 : 0);
-        stage->kernel.set(3, count);
-        stage->kernel.set(4, memory_.sums);
+    for (opencl::Kernel* kernel : {&compact_count_, &compact_write_}) {
+        kernel->set(0, depth);
+        kernel->set(1, memory_.live[0]);
+        kernel->set(2, is_compacted ? 1 : 0);
+        kernel->set(3, count);
+        kernel->set(4, memory_.sums);
     }
-    const auto scratch = [](const StageKernel& stage) {
-        return 2 * sizeof(int) * size_t(stage.group_size);
-    };
-    kernels_[STAGE_compact].kernel.set_local(5, scratch(kernels_[STAGE_compact]));
-    launch(kernels_[STAGE_compact], groups);
-    compact_scan_.kernel.set(0, memory_.sums);
-    compact_scan_.kernel.set(1, groups);
-    compact_scan_.kernel.set(2, memory_.total);
-    compact_scan_.kernel.set_local(3, scratch(compact_scan_));
-    launch(compact_scan_, 1);
+    launch(compact_count_, STAGE_compact, count, groups_of(count));
+    compact_scan_.set(0, memory_.sums);
+    compact_scan_.set(1, groups_of(count));
+    compact_scan_.set(2, memory_.total);
+    launch(compact_scan_, STAGE_compact, count, 1);
     if (!keeps_order) {
-        compact_write_.kernel.set(5, memory_.live[1]);
-        compact_write_.kernel.set_local(6, scratch(compact_write_));
-        launch(compact_write_, groups);
+        compact_write_.set(5, memory_.live[1]);
+        launch(compact_write_, STAGE_compact, count, groups_of(count));
         std::swap(memory_.live[0], memory_.live[1]);
     }
     int live = 0;
@@ -267,8 +241,14 @@ int OpenclBackend::compact(int count, bool is_compacted, bool keeps_order)
     return live;
 }
 
-void OpenclBackend::note(Stage stage, int paths, opencl::Event event)
+int OpenclBackend::groups_of(int paths) const
 {
+    return (paths + device_.group_size - 1) / device_.group_size;
+}
+
+void OpenclBackend::launch(const opencl::Kernel& kernel, Stage stage, int paths, int groups)
+{
+    opencl::Event event = queue_.launch(kernel, size_t(groups), size_t(device_.group_size));
     running_.push_back({stage, paths, std::move(event)});
 }
 

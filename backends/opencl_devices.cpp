@@ -46,6 +46,15 @@ bool is_exact(const opencl::Device& device)
     return (config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
 }
 
+// 64 where possible: a multiple of what GPUs run in step.
+int group_size(const opencl::Device& device)
+{
+    const size_t largest = device.number<size_t>(CL_DEVICE_MAX_WORK_GROUP_SIZE);
+    int size = 1;
+    while (size < 64 && size_t(2 * size) <= largest) size *= 2;
+    return size;
+}
+
 DeviceInfo describe(const opencl::Device& device, int index)
 {
     DeviceInfo info;
@@ -57,6 +66,7 @@ DeviceInfo describe(const opencl::Device& device, int index)
     info.driver = device.text(CL_DRIVER_VERSION);
     info.memory_bytes = size_t(device.number<cl_ulong>(CL_DEVICE_GLOBAL_MEM_SIZE));
     info.largest_allocation = size_t(device.number<cl_ulong>(CL_DEVICE_MAX_MEM_ALLOC_SIZE));
+    info.group_size = group_size(device);
     info.is_cpu = (device.number<cl_device_type>(CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
     info.why_not = why_unusable(device);
     info.is_usable = info.why_not.empty();

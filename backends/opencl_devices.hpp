@@ -17,6 +17,7 @@ struct DeviceInfo {
     std::string driver;
     size_t memory_bytes = 0;
     size_t largest_allocation = 0;
+    int group_size = 1;  // of all kernels: a power of two that the device can run
     bool is_cpu = false;
     bool is_exact = true;  // division and square root round as IEEE 754 says
     bool is_usable = true;

@@ -68,7 +68,8 @@ Built build(const opencl::Context& context, const DeviceInfo& device, const std:
 std::string program_options(const DeviceInfo& device, const BackendOptions& options,
                             unsigned effects)
 {
-    std::string text = "-cl-std=CL1.2 -D EFFECTS=" + std::to_string(effects);
+    std::string text = "-cl-std=CL1.2 -D EFFECTS=" + std::to_string(effects) +
+                       " -D GROUP_SIZE=" + std::to_string(device.group_size);
     text += fault_option(options.plant_fault);
     if (options.fast_math)
         text += " -cl-fast-relaxed-math -cl-mad-enable";

@@ -1,6 +1,6 @@
 // The kernel of one stage. The build runs the C preprocessor over this file once for each row of
-// common/stages/stages.h, with STAGE and WHEN as the row says; EFFECTS and FAULT stay open until
-// the program is compiled for a device.
+// common/stages/stages.h, with STAGE and WHEN as the row says; EFFECTS, FAULT and GROUP_SIZE stay
+// open until the program is compiled for a device.
 #include "platform.h"
 
 #include "kernels_cl/arguments.h"
@@ -23,7 +23,8 @@
 #define RUN_(when, stage, k) RUN_##when(stage, k)
 #define RUN(when, stage, k) RUN_(when, stage, k)
 
-__kernel void ENTRY_NAME(STAGE)(KERNEL_ARGUMENTS)
+__kernel __attribute__((reqd_work_group_size(GROUP_SIZE, 1, 1))) void
+ENTRY_NAME(STAGE)(KERNEL_ARGUMENTS)
 {
     KERNEL_VIEWS
     const int k = (int)get_global_id(0);
