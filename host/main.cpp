@@ -1,11 +1,17 @@
 // The command line: each command is a file in host/commands.
+#include "host/commands/compare_backends.hpp"
+#include "host/commands/devices_command.hpp"
+#include "host/commands/explain_command.hpp"
 #include "host/commands/render_command.hpp"
+#include "host/commands/selftest_command.hpp"
 #include "host/image/compare_cli.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
+#include <new>
 
 namespace {
 
@@ -16,6 +22,18 @@ std::string joined(int count, char** arguments)
     std::string text = "diptych";
     for (int k = 1; k < count; ++k) text += std::string(" ") + arguments[k];
     return text;
+}
+
+// One line, whatever the parser says.
+int refuse(const CLI::App& app, const CLI::ParseError& error)
+{
+    std::string text = error.what();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    const std::vector<CLI::App*> parsed = app.get_subcommands();
+    const std::string command = parsed.empty() ? "" : parsed.front()->get_name() + " ";
+    const std::string at = parsed.empty() ? "" : parsed.front()->get_name() + ": ";
+    fmt::print(stderr, "diptych: {}{}; see diptych {}--help\n", at, text, command);
+    return exit_error;
 }
 
 int run(int count, char** arguments)
@@ -31,15 +49,27 @@ int run(int count, char** arguments)
     RenderCommand render;
     render.command_line = joined(count, arguments);
     const CLI::App* render_command = add_render_command(app, render);
-    image::CompareOptions compare;
-    const CLI::App* compare_command = image::add_compare_command(app, compare);
+    CompareBackendsCommand compare;
+    CLI::App* compare_command = image::add_compare_command(app, compare.compare);
+    add_compare_backends_flags(*compare_command, compare);
+    ExplainCommand explain;
+    const CLI::App* explain_command = add_explain_command(app, explain);
+    const CLI::App* devices_command = add_devices_command(app);
+    SelftestCommand selftest;
+    const CLI::App* selftest_command = add_selftest_command(app, selftest);
     try {
         app.parse(count, arguments);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : exit_error;
+        return error.get_exit_code() == 0 ? app.exit(error) : refuse(app, error);
     }
     if (render_command->parsed()) return run_render_command(render);
-    if (compare_command->parsed()) return image::compare_command(compare, std::cout, std::cerr);
+    if (explain_command->parsed()) return run_explain_command(explain);
+    if (devices_command->parsed()) return run_devices_command();
+    if (selftest_command->parsed()) return run_selftest_command(selftest);
+    if (compare_command->parsed() && !compare.compare.backends.empty())
+        return run_compare_backends(compare, std::cout);
+    if (compare_command->parsed())
+        return image::compare_command(compare.compare, std::cout, std::cerr);
     return exit_error;
 }
 
@@ -49,6 +79,9 @@ int main(int count, char** arguments)
 {
     try {
         return run(count, arguments);
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "diptych: out of memory; render a smaller picture or scene\n");
+        return exit_error;
     } catch (const std::exception& error) {
         fmt::print(stderr, "diptych: {}\n", error.what());
         return exit_error;

@@ -118,6 +118,11 @@ void add_scene_flags(CLI::App& app, SceneFlags& flags)
 {
     app.add_option("SCENE", flags.scene,
                    "glTF 2.0 file (.gltf or .glb); without it, the demo scene");
+    add_view_flags(app, flags);
+}
+
+void add_view_flags(CLI::App& app, SceneFlags& flags)
+{
     app.add_option("--size", flags.size, "Picture size, WxH in pixels")->capture_default_str();
     app.add_option("--samples", flags.samples, "Samples a pixel")->capture_default_str();
     app.add_option("--seed", flags.seed, "Another seed is another, independent noise")
@@ -151,6 +156,11 @@ void add_device_flags(CLI::App& app, DeviceFlags& flags)
     app.add_option("--backend", flags.backend,
                    "cpu (Embree, vectorised), opencl, twin (what OpenCL runs, as C++) or double")
         ->capture_default_str();
+    add_device_options(app, flags);
+}
+
+void add_device_options(CLI::App& app, DeviceFlags& flags)
+{
     app.add_option("--device", flags.options.device,
                    "OpenCL device, by number or part of its name (see diptych devices)");
     app.add_option("--threads", flags.options.threads, "Threads; 0: as many as the machine has")

@@ -34,7 +34,9 @@ struct DeviceFlags {
 };
 
 void add_scene_flags(CLI::App& app, SceneFlags& flags);
+void add_view_flags(CLI::App& app, SceneFlags& flags);  // without the scene's name
 void add_device_flags(CLI::App& app, DeviceFlags& flags);
+void add_device_options(CLI::App& app, DeviceFlags& flags);  // without --backend
 
 // Checks what the flags say and loads the scene, settings filled in. Throws std::runtime_error.
 SceneData load_from_flags(const SceneFlags& flags);

@@ -1,0 +1,175 @@
+#include "host/commands/selftest_scenes.hpp"
+
+#include "host/scene/scene_builder.hpp"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace diptych {
+namespace {
+
+constexpr int picture_size = 32;
+
+using Texel = std::array<double, 4>;  // 0 to 1 for 8 bits
+
+Picture picture_of(int width, int height, bool is_float,
+                   const std::function<Texel(double u, double v)>& paint)
+{
+    Picture picture;
+    picture.width = width;
+    picture.height = height;
+    picture.is_integer = !is_float;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (const double value : paint((x + 0.5) / width, (y + 0.5) / height)) {
+                if (is_float)
+                    picture.floats.push_back(float(value));
+                else
+                    picture.bytes.push_back(std::uint8_t(std::lround(value * 255)));
+            }
+    return picture;
+}
+
+Picture sky()
+{
+    return picture_of(16, 8, true, [](double u, double v) {
+        const bool is_sun = std::abs(u - 0.3) < 0.04 && std::abs(v - 0.3) < 0.07;
+        const double glow = is_sun ? 40 : 0;
+        return Texel{0.3 + 0.4 * u + glow, 0.5 + glow, 0.9 - 0.5 * v + glow, 1};
+    });
+}
+
+Texel checks(double u, double v)
+{
+    const bool is_odd = (int(u * 6) + int(v * 6)) % 2 != 0;
+    return is_odd ? Texel{0.9, 0.3, 0.2, 1} : Texel{0.2, 0.6, 0.8, 0.3};
+}
+
+Texel bumps(double u, double v)
+{
+    const double x = 0.4 * std::sin(2 * std::numbers::pi * 3 * u);
+    const double y = 0.4 * std::sin(2 * std::numbers::pi * 2 * v);
+    return {0.5 + 0.5 * x, 0.5 + 0.5 * y, 0.95, 1};
+}
+
+MeshPart with_colors(MeshPart part)
+{
+    for (size_t k = 0; k < part.positions.size(); ++k) {
+        const float t = float(k) / float(part.positions.size());
+        part.colors.push_back({1 - 0.5f * t, 0.4f + 0.6f * t, 0.8f, 1});
+    }
+    return part;
+}
+
+void add_textured_things(SceneBuilder& scene)
+{
+    const TextureUse checked{.image = scene.add_image(picture_of(32, 32, false, checks)),
+                             .wrap_u = WRAP_MIRROR,
+                             .to_uv = {{{1.7, 0.4, 0.1}, {-0.4, 1.7, 0.2}}}};
+    TextureUse nearest = checked;
+    nearest.filter = TEXTURE_NEAREST;
+    nearest.wrap_v = WRAP_CLAMP;
+    const TextureUse measured{.image = scene.add_image(picture_of(8, 8, true, [](double u, double) {
+        return Texel{0.5, 0.2 + 0.8 * u, 0.7, 0.5 + 0.5 * u};
+    }))};
+    const TextureUse bumpy{.image = scene.add_image(picture_of(32, 32, false, bumps))};
+    const int floor = scene.add_material({.roughness = 0.4f,
+                                          .normal_scale = 0.8f,
+                                          .base_texture = checked,
+                                          .normal_texture = bumpy});
+    const int panel = scene.add_material({.emission = {3, 2.5f, 2}, .emission_texture = nearest});
+    const int leaf = scene.add_material(
+        {.alpha_mode = ALPHA_MASK, .is_double_sided = true, .base_texture = nearest});
+    const int veil =
+        scene.add_material({.base_color = {0.8f, 0.9f, 0.8f, 0.5f}, .alpha_mode = ALPHA_BLEND});
+    const int metal = scene.add_material({.metallic = 0.9f,
+                                          .roughness = 0.9f,
+                                          .metallic_roughness_texture = measured,
+                                          .normal_texture = bumpy});
+    const int coated = scene.add_material({.roughness = 0.2f,
+                                           .specular_color = {1, 0.7f, 0.4f},
+                                           .ior = 1.8f,
+                                           .specular_texture = measured,
+                                           .specular_color_texture = checked});
+    scene.place(scene.add_mesh(quad_mesh({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, floor)));
+    scene.place(scene.add_mesh(quad_mesh({-1, 2.6, -1}, {2, 0, 0}, {0, 0, 2}, panel)));
+    scene.place(scene.add_mesh(quad_mesh({-1.6, 0.1, 0.9}, {1, 0, 0.3}, {0, 1.2, 0}, leaf)));
+    scene.place(scene.add_mesh(quad_mesh({0.5, 0.1, 1.2}, {1.1, 0, -0.2}, {0, 1.3, 0}, veil)));
+    const int ball = scene.add_mesh(with_colors(sphere_mesh({0, 0, 0}, 0.55, 24, metal)));
+    scene.place(ball, translation(-0.8, 0.55, -0.4));
+    scene.place(ball, translation(0.7, 0.7, -0.8) * scaling(-1, 1.2, 0.8));
+    scene.place(scene.add_mesh(sphere_mesh({0.1, 0.35, 0.7}, 0.35, 24, coated)));
+}
+
+SceneData everything()
+{
+    SceneBuilder scene;
+    add_textured_things(scene);
+    const int sign = scene.add_material({.base_color = {0.1f, 0.8f, 0.3f, 1}, .is_unlit = true});
+    scene.place(scene.add_mesh(box_mesh({-2.2, 0, -1.6}, {-1.6, 0.6, -1}, sign)));
+    scene.add_light({.kind = LIGHT_POINT, .intensity = {2, 2, 1}, .position = {1.5, 1.8, 1.5}});
+    scene.add_light({.kind = LIGHT_SPOT,
+                     .intensity = {6, 4, 4},
+                     .position = {-1.5, 2, 1.5},
+                     .direction = {0.6, -1, -0.7},
+                     .inner_angle = 0.2,
+                     .outer_angle = 0.6,
+                     .range = 8});
+    scene.add_light(
+        {.kind = LIGHT_DIRECTIONAL, .intensity = {0.5f, 0.6f, 0.8f}, .direction = {0.3, -1, 0.2}});
+    scene.set_environment(sky(), 0.7, 0.5f);
+    scene.set_camera({.eye = {0.3, 1.6, 4.2}, .target = {0, 0.7, 0}});
+    scene.set_picture_size(picture_size, picture_size);
+    return scene.finish();
+}
+
+// What the loops for simple scenes are made for: Lambert under area lights.
+SceneData matte_room()
+{
+    SceneBuilder scene;
+    const auto matte = [&](float r, float g, float b) {
+        return scene.add_material({.base_color = {r, g, b, 1}, .specular = 0});
+    };
+    const int lamp = scene.add_material({.specular = 0, .emission = {9, 8, 6}});
+    scene.place(scene.add_mesh(quad_mesh({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, matte(.7f, .7f, .7f))));
+    scene.place(scene.add_mesh(quad_mesh({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, matte(.7f, .7f, .6f))));
+    scene.place(scene.add_mesh(quad_mesh({-1, 0, 1}, {0, 0, -2}, {0, 2, 0}, matte(.6f, .1f, .1f))));
+    scene.place(
+        scene.add_mesh(box_mesh({-0.3, 0, -0.5}, {0.5, 0.9, 0.2}, matte(0.2f, 0.5f, 0.3f))));
+    scene.place(scene.add_mesh(quad_mesh({-.3, 1.9, -.3}, {.6, 0, 0}, {0, 0, .6}, lamp)));
+    scene.set_camera({.eye = {0.4, 1.2, 4}, .target = {0, 0.9, 0}, .half_height = 1.2});
+    scene.set_picture_size(picture_size, picture_size);
+    return scene.finish();
+}
+
+// Roughness from mirror to matte, metals and dielectrics, nothing but a sky for light.
+SceneData row_of_balls()
+{
+    SceneBuilder scene;
+    const int ground = scene.add_material({.base_color = {0.4f, 0.4f, 0.4f, 1}});
+    scene.place(scene.add_mesh(quad_mesh({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, ground)));
+    for (int k = 0; k < 6; ++k) {
+        const int material = scene.add_material({.base_color = {0.9f, 0.7f, 0.4f, 1},
+                                                 .metallic = k % 2 == 0 ? 1.0f : 0.0f,
+                                                 .roughness = float(k / 2) * 0.5f});
+        scene.place(scene.add_mesh(sphere_mesh({k - 2.5, 0.45, 0}, 0.45, 24, material)));
+    }
+    scene.set_environment(sky());
+    scene.set_camera({.eye = {0, 1.8, 6}, .target = {0, 0.3, 0}});
+    scene.set_picture_size(picture_size, picture_size);
+    return scene.finish();
+}
+
+}  // namespace
+
+std::vector<SelftestScene> selftest_scenes()
+{
+    std::vector<SelftestScene> scenes;
+    scenes.push_back({"everything at once", everything()});
+    scenes.push_back({"matte room, orthographic", matte_room()});
+    scenes.push_back({"balls under a sky", row_of_balls()});
+    return scenes;
+}
+
+}  // namespace diptych
