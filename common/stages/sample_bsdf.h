@@ -8,10 +8,13 @@
 #define ROULETTE_FIRST_DEPTH 2  // scattering events before Russian roulette begins
 
 // Probability of going on: how much the path can still bring, at most `throughput` of what it
-// meets.
+// meets. Below one, so that every path ends; but where surfaces reflect more than its root, weights
+// grow faster than paths end and the variance has no bound.
+#define ROULETTE_MOST 0.999f
+
 SHARED float roulette_survival(float3 throughput, int depth)
 {
-    const float most = math_clamp(vec_max_component(throughput), 0.0f, 0.95f);
+    const float most = math_clamp(vec_max_component(throughput), 0.0f, ROULETTE_MOST);
     return depth < ROULETTE_FIRST_DEPTH ? 1.0f : most;
 }
 
