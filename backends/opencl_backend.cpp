@@ -167,9 +167,11 @@ void OpenclBackend::begin(const Dispatch& dispatch)
 {
     paths_ = dispatch.paths();
     results_ = dispatch.results();
-    if (paths_ > memory_.paths || results_ > memory_.paths)
-        throw std::runtime_error("opencl: a dispatch of " + std::to_string(paths_) +
-                                 " paths exceeds the plan's " + std::to_string(memory_.paths));
+    if (paths_ > memory_.paths || results_ > memory_.results ||
+        dispatch.items.size_bytes() > memory_.items.bytes())
+        throw std::runtime_error("opencl: a dispatch of " + std::to_string(dispatch.items.size()) +
+                                 " items, " + std::to_string(paths_) +
+                                 " paths, exceeds the plan's " + std::to_string(memory_.paths));
     queue_.write(memory_.items, dispatch.items.size_bytes(), dispatch.items.data());
     for (int k = 0; k < STAGE_COUNT; ++k) {
         if (!programs_.programs[k] || k == STAGE_compact) continue;

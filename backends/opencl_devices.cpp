@@ -102,8 +102,18 @@ bool is_chosen(const DeviceInfo& device, const std::string& choice)
 std::vector<DeviceInfo> list_opencl_devices()
 {
     std::vector<DeviceInfo> list;
-    for (const opencl::Device& device : opencl::all_devices())
-        list.push_back(describe(device, int(list.size())));
+    for (const opencl::Device& device : opencl::all_devices()) {
+        const int index = int(list.size());
+        try {
+            list.push_back(describe(device, index));
+        } catch (const std::runtime_error& error) {  // a broken driver must not hide the others
+            DeviceInfo broken;
+            broken.index = index;
+            broken.is_usable = false;
+            broken.why_not = error.what();
+            list.push_back(broken);
+        }
+    }
     return list;
 }
 

@@ -101,8 +101,7 @@ DispatchMemory::DispatchMemory(const opencl::Context& context, int item_count, i
     : paths(item_count * paths_per_item), results(item_count * results_per_item),
       path_planes(planes(context, path_rows(), paths)),
       result_planes(planes(context, result_rows(), results)),
-      // items of one pixel are many more for as many paths
-      items(context.buffer(sizeof(WorkItem) * size_t(paths / QUANTUM), "items"))
+      items(context.buffer(sizeof(WorkItem) * size_t(item_count), "items"))
 {
     for (opencl::Buffer& list : live) list = context.buffer(sizeof(int) * size_t(paths), "live");
     const int groups = (paths + group_size - 1) / group_size;

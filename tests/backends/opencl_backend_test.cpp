@@ -155,6 +155,23 @@ TEST_F(OpenclBackendTest, ChangesWithAPlantedFault)
     });
 }
 
+TEST_F(OpenclBackendTest, StaysCloseWithFastMath)
+{
+    SceneData scene = lamp_scene();
+    const auto mean_of = [&](Backend& backend) {
+        const Results results = render(backend, scene, blocks(scene), QUANTUM);
+        return std::accumulate(results.sum_radiance.begin(), results.sum_radiance.end(), 0.0);
+    };
+    on_each_device({}, [&](Backend& exact) {
+        BackendOptions fast;
+        fast.fast_math = true;
+        on_each_device(fast, [&](Backend& other) {
+            EXPECT_NEAR(mean_of(other) / mean_of(exact), 1.0, 0.01);
+            EXPECT_NE(other.description().find("fast math"), std::string::npos);
+        });
+    });
+}
+
 TEST_F(OpenclBackendTest, NamesDeviceProgramFileAndLineOfACompilerError)
 {
     SceneData scene = lamp_scene();

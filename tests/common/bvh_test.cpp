@@ -1,6 +1,8 @@
 // The walk of common/bvh.h against Embree, and its own laws: ties, order, depth, odd input.
 #include "tests/common/bvh_fixture.hpp"
 
+#include "backends/bvh_flatten.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -167,6 +169,33 @@ TEST(BvhBuild, NamesEveryTriangleOnceAndKeepsTheDepth)
                   scene.triangles.size());
         EXPECT_EQ(scene.bvh_items.size(), scene.triangles.size());
         EXPECT_LE(depth_of(scene, scene.instances[0].root_node), BVH_MESH_DEPTH);
+    }
+}
+
+// With hardly more levels than halves need, deep parts are split anew; hits stay the same.
+TEST(BvhBuild, HalvesWhatWouldLieTooDeep)
+{
+    for (const int depth : {10, 11, 14}) {
+        SceneData scene = spiral(3000);
+        std::vector<BuildItem> items;
+        for (int id = 0; id < 3000; ++id) items.push_back({triangle_box(scene, id), id});
+        BvhBuilder builder;
+        BvhFlattener flattener(scene.bvh_nodes, scene.bvh_items);
+        const BuildTree tree = builder.build(items, BVH_MESH_LEAF);
+        scene.instances[0].root_node = flattener.add(tree, depth);
+        EXPECT_LE(depth_of(scene, scene.instances[0].root_node), depth);
+        EXPECT_EQ(std::set<int>(scene.bvh_items.begin(), scene.bvh_items.end()).size(), 3000u);
+
+        SceneData usual = spiral(3000);
+        build_bvh(usual);
+        EXPECT_GT(depth_of(usual, usual.instances[0].root_node), depth) << "the test tests little";
+        const Scene view = view_of(scene);
+        const Scene usual_view = view_of(usual);
+        for (const TestRay& ray : random_rays(1000, 0.0f, 10)) {
+            const Hit a = bvh_closest(&view, ray.origin, ray.direction, FLOAT_MAX, 0);
+            const Hit b = bvh_closest(&usual_view, ray.origin, ray.direction, FLOAT_MAX, 0);
+            EXPECT_EQ(a.triangle, b.triangle);
+        }
     }
 }
 
