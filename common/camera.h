@@ -22,12 +22,18 @@ SHARED Ray camera_ray(const Scene* scene, float x, float y)
     const float3 forward = xyz(scene->settings[0].camera_forward);
     const float3 origin = xyz(scene->settings[0].camera_origin);
     Ray ray;
+    ray.origin = origin;
+    ray.direction = vec_normalize(forward + right + up);
     if (uses(scene, EFFECT_ORTHOGRAPHIC)) {
-        ray.origin = origin + right + up;
-        ray.direction = forward;
-    } else {
-        ray.origin = origin;
-        ray.direction = vec_normalize(forward + right + up);
+        // A vectorised loop may be compiled for more effects than the scene has.
+        const int is_parallel = scene->settings[0].camera_kind == CAMERA_ORTHOGRAPHIC;
+        const float3 shifted = origin + right + up;
+        ray.origin =
+            make_float3(is_parallel ? shifted.x : origin.x, is_parallel ? shifted.y : origin.y,
+                        is_parallel ? shifted.z : origin.z);
+        ray.direction = make_float3(is_parallel ? forward.x : ray.direction.x,
+                                    is_parallel ? forward.y : ray.direction.y,
+                                    is_parallel ? forward.z : ray.direction.z);
     }
     return ray;
 }

@@ -117,10 +117,11 @@ SHARED float2 triangle_barycentrics(WorldTriangle t, float3 origin, float3 direc
     return make_float2(math_lesser(u * scale, 1.0f), math_lesser(v * scale, 1.0f));
 }
 
-// Interpolates between three corners' values with the weights of the second and third.
+// Interpolates between three corners' values with the weights of the second and third; where all
+// three are the same, gives exactly that.
 SHARED float interpolate(float a, float b, float c, float2 weights)
 {
-    return a * (1.0f - weights.x - weights.y) + b * weights.x + c * weights.y;
+    return a + (b - a) * weights.x + (c - a) * weights.y;
 }
 
 SHARED float2 surface_uv(const Scene* scene, int triangle, float2 weights, int slot)
