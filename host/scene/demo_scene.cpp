@@ -202,7 +202,7 @@ void add_objects(SceneBuilder& scene)
 
     // Leaning against the back wall, turned a little towards the room.
     const Transform leaning = translation(1.2, 0.03, -1.4) * rotation_about({0, 1, 0}, -0.6) *
-                              rotation_about({1, 0, 0}, -0.16);
+                              rotation_about({1, 0, 0}, -0.05);
     scene.place(scene.add_mesh(quad_mesh({-0.5, 0.05, 0.031}, {1, 0, 0}, {0, 2, 0}, mirror)),
                 leaning);
     scene.place(scene.add_mesh(box_mesh({-0.56, -0.01, -0.03}, {0.56, 2.11, 0.03}, brass)),

@@ -46,7 +46,7 @@ Light packed_light(const PunctualLight& light)
     packed.position = to_float4(light.position);
     packed.edge1 = to_float4(unit(light.direction));
     packed.emission = {light.intensity[0], light.intensity[1], light.intensity[2], 0};
-    packed.triangle = packed.instance = -1;
+    packed.triangle = packed.instance = 0;  // vector code reads them before it knows the kind
     packed.range = float(light.range);
     if (light.kind == LIGHT_SPOT) {
         // At least 0.001 between the cosines, as the extension's reference code has it.
@@ -111,7 +111,7 @@ void SceneAssembly::assemble_lights()
     if (environment_power_ > 0) {
         Light light{};
         light.kind = LIGHT_ENVIRONMENT;
-        light.triangle = light.instance = -1;
+        light.triangle = light.instance = 0;
         settings.environment_light = int(data_.lights.size());
         data_.lights.push_back(light);
         powers.push_back(pi * radius * radius * environment_power_);
