@@ -12,6 +12,7 @@
 #endif
 
 #include <atomic>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -68,6 +69,9 @@ struct PacketContext {
     const int* first_triangle;  // by instance
     int path[width];
     int purpose;
+    // The best hit so far of each ray of the packet: its distance, then instance and triangle.
+    float best_distance[width];
+    std::uint64_t best_place[width];
 };
 
 int instance_of(unsigned embree_instance)
@@ -75,7 +79,7 @@ int instance_of(unsigned embree_instance)
     return embree_instance == RTC_INVALID_GEOMETRY_ID ? 0 : int(embree_instance);
 }
 
-// Alpha: does this hit stop the ray?
+// Alpha: hits that let the ray through are not hits.
 void filter_alpha(const RTCFilterFunctionNArguments* arguments)
 {
     const auto* context = reinterpret_cast<const PacketContext*>(arguments->context);
@@ -94,6 +98,34 @@ void filter_alpha(const RTCFilterFunctionNArguments* arguments)
         const float v = RTCHitN_v(arguments->hit, n, k);
         if (!alpha_accepts(scene, instance, triangle, u, v, seed)) arguments->valid[k] = 0;
     }
+}
+
+// Of hits at equal distance the one with the smaller instance and triangle counts, so that what a
+// ray hits does not depend on the order in which Embree meets it, nor on the packet's other rays.
+void filter_ties(const RTCFilterFunctionNArguments* arguments)
+{
+    auto* context = reinterpret_cast<PacketContext*>(arguments->context);
+    const unsigned n = arguments->N;
+    for (unsigned k = 0; k < n; ++k) {
+        if (arguments->valid[k] != -1) continue;
+        const unsigned lane = RTCRayN_id(arguments->ray, n, k);
+        const float distance = RTCRayN_tfar(arguments->ray, n, k);
+        const std::uint64_t instance = RTCHitN_instID(arguments->hit, n, k, 0) + 1u;  // world: 0
+        const std::uint64_t place = instance << 32 | RTCHitN_primID(arguments->hit, n, k);
+        const float best = context->best_distance[lane];
+        if (distance < best || (distance == best && place < context->best_place[lane])) {
+            context->best_distance[lane] = distance;
+            context->best_place[lane] = place;
+        } else {
+            arguments->valid[k] = 0;
+        }
+    }
+}
+
+void filter_alpha_then_ties(const RTCFilterFunctionNArguments* arguments)
+{
+    filter_alpha(arguments);
+    filter_ties(arguments);
 }
 
 }  // namespace
@@ -119,10 +151,9 @@ struct EmbreeScene::Implementation {
                                    mesh.positions, 0, 16, mesh.vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    mesh.triangles, 0, 16, size_t(mesh.triangle_count));
-        if (has_alpha) {
-            rtcSetGeometryIntersectFilterFunction(geometry, filter_alpha);
-            rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
-        }
+        rtcSetGeometryIntersectFilterFunction(geometry,
+                                              has_alpha ? filter_alpha_then_ties : filter_ties);
+        if (has_alpha) rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
         rtcCommitGeometry(geometry);
         return geometry;
     }
@@ -228,6 +259,8 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
             valid[k] = is_alive ? -1 : 0;
             rays += is_alive ? 1 : 0;
             context.path[k] = i;
+            context.best_distance[k] = far_away;
+            context.best_place[k] = ~std::uint64_t(0);
             packet.ray.org_x[k] = paths.ray_origin[i];
             packet.ray.org_y[k] = paths.ray_origin[n + i];
             packet.ray.org_z[k] = paths.ray_origin[2 * n + i];
