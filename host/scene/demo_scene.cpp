@@ -171,8 +171,8 @@ void add_room(SceneBuilder& scene)
     wall({2, 0, -2}, {0, 0, 4.6}, {0, 3, 0}, teal);
 
     const int lamp =
-        scene.add_material({.name = "lamp", .specular = 0, .emission = {22, 19.5f, 16}});
-    wall({-0.65, 2.98, -0.75}, {1.3, 0, 0}, {0, 0, 1.1}, lamp);
+        scene.add_material({.name = "lamp", .specular = 0, .emission = {7.2f, 6.4f, 5.2f}});
+    wall({-1.25, 2.98, -1.3}, {2.5, 0, 0}, {0, 0, 1.9}, lamp);
 }
 
 void add_objects(SceneBuilder& scene)
