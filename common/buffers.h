@@ -13,6 +13,7 @@
     X(float2, uvs)                   \
     X(float4, colors)                \
     X(Triangle, triangles)           \
+    X(int, triangle_objects)         \
     X(Instance, instances)           \
     X(Material, materials)           \
     X(TextureSlot, texture_slots)    \

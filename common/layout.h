@@ -76,7 +76,8 @@ typedef struct {
     int triangle_count;
     int root_node;    // of the mesh's tree in bvh_nodes
     int is_mirrored;  // the determinant is negative: the winding that faces front is reversed
-    float4 reserved;
+    int object;  // the number of the placement, for the layer of object ids
+    int reserved[3];
 } Instance;
 
 typedef struct {

@@ -417,11 +417,13 @@ void SceneAssembly::assemble_geometry()
     reserve_geometry();
 
     Instance world = placed_instance({}, {});
+    int object = 0;
     for (const auto& placement : builder_.placements_) {
-        if (placement_counts_[size_t(placement.mesh)] > 1) {
-            continue;
+        if (placement_counts_[size_t(placement.mesh)] == 1) {
+            append_mesh(builder_.meshes_[size_t(placement.mesh)], placement.to_world);
+            data_.triangle_objects.resize(data_.triangles.size(), object);
         }
-        append_mesh(builder_.meshes_[size_t(placement.mesh)], placement.to_world);
+        ++object;
     }
     world.triangle_count = int(data_.triangles.size());
     data_.instances.push_back(world);
@@ -429,8 +431,10 @@ void SceneAssembly::assemble_geometry()
 
     std::vector<int> first_triangle(builder_.meshes_.size(), -1);
     std::vector<int> triangle_count(builder_.meshes_.size(), 0);
+    object = -1;
     for (const auto& placement : builder_.placements_) {
         const size_t m = size_t(placement.mesh);
+        ++object;
         if (placement_counts_[m] < 2) {
             continue;
         }
@@ -445,6 +449,7 @@ void SceneAssembly::assemble_geometry()
         Instance instance = placed_instance(placement.to_world, inverse(placement.to_world));
         instance.first_triangle = first_triangle[m];
         instance.triangle_count = triangle_count[m];
+        instance.object = object;
         data_.instances.push_back(instance);
         data_.instance_names.push_back(placement.name);
     }
