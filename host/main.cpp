@@ -25,11 +25,12 @@ std::string joined(int count, char** arguments)
 }
 
 // One line, whatever the parser says.
-int refuse(const CLI::App& app, const CLI::ParseError& error)
+int refuse(const CLI::App& app, const CLI::ParseError& error, const std::string& first)
 {
     std::string text = error.what();
     std::replace(text.begin(), text.end(), '\n', ' ');
     const std::vector<CLI::App*> parsed = app.get_subcommands();
+    if (parsed.empty() && !first.empty() && first[0] != '-') text = first + ": no such command";
     const std::string command = parsed.empty() ? "" : parsed.front()->get_name() + " ";
     const std::string at = parsed.empty() ? "" : parsed.front()->get_name() + ": ";
     fmt::print(stderr, "diptych: {}{}; see diptych {}--help\n", at, text, command);
@@ -60,7 +61,8 @@ int run(int count, char** arguments)
     try {
         app.parse(count, arguments);
     } catch (const CLI::ParseError& error) {
-        return error.get_exit_code() == 0 ? app.exit(error) : refuse(app, error);
+        return error.get_exit_code() == 0 ? app.exit(error)
+                                          : refuse(app, error, count > 1 ? arguments[1] : "");
     }
     if (render_command->parsed()) return run_render_command(render);
     if (explain_command->parsed()) return run_explain_command(explain);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <iostream>
 #include <stdexcept>
@@ -35,17 +36,17 @@ image::View parse_view(const std::string& text)
     throw std::runtime_error("--view " + text + ": no such view; use standard, neutral or filmic");
 }
 
-std::optional<Pixel> parse_pixel(const std::string& text, const Settings& settings)
+std::optional<Pixel> parse_pixel(const std::string& text, const std::string& size)
 {
     if (text.empty()) return std::nullopt;
+    const auto [width, height] = parse_size(size);
     Pixel pixel{};
     char rest = 0;
     if (std::sscanf(text.c_str(), "%d,%d%c", &pixel.x, &pixel.y, &rest) != 2)
         throw std::runtime_error("--pixel " + text + ": not a pixel; give X,Y from the upper left");
-    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= settings.width || pixel.y >= settings.height)
-        throw std::runtime_error(
-            fmt::format("--pixel {}: outside the picture; it has {} x {} pixels", text,
-                        settings.width, settings.height));
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= width || pixel.y >= height)
+        throw std::runtime_error(fmt::format(
+            "--pixel {}: outside the picture; it has {} x {} pixels", text, width, height));
     return pixel;
 }
 
@@ -83,9 +84,11 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
 {
     CLI::App* render = app.add_subcommand("render", "Render a scene to pictures");
     add_scene_flags(*render, command.scene);
-    render->add_option("-o,--output", command.outputs,
-                       "Picture to write: .exr holds every layer, .png .jpg .tif the view. May be "
-                       "given more than once. Default: diptych.png");
+    render
+        ->add_option("-o,--output", command.outputs,
+                     "Picture to write: .exr holds every layer, .png .jpg .tif the view. May be "
+                     "given more than once. Default: diptych.png")
+        ->allow_extra_args(false);
     add_device_flags(*render, command.device);
     render->add_option(
         "--pixel", command.pixel,
@@ -106,6 +109,11 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
     render->add_option("--json", command.json,
                        "Write a report: times by stage, rays, memory, effects, SHA-256 of every "
                        "layer. - is standard output");
+    render->footer(
+        "SIGINT and SIGTERM end the pass under way; the pictures then hold the samples so far. A "
+        "second one ends\nthe program at once.\n"
+        "Exit codes: 0 done, 2 error (one line on standard error; no picture), 130 interrupted "
+        "(pictures written).");
     return render;
 }
 
@@ -113,17 +121,21 @@ int run_render_command(const RenderCommand& command)
 {
     image::WriteOptions write = command.write;
     write.view = parse_view(command.view);
+    if (!(std::abs(write.exposure) <= 100))
+        throw std::runtime_error(fmt::format(
+            "--exposure {}: out of range; give stops from -100 to 100", write.exposure));
     RenderCommand run = command;
     if (run.outputs.empty() && run.pixel.empty()) run.outputs.push_back("diptych.png");
     for (const std::string& path : run.outputs) image::check_writable(path);
+    if (!run.json.empty() && run.json != "-") image::check_file_writable(run.json);
 
-    SceneData scene = load_from_flags(run.scene);
     RenderOptions options;
     options.samples = run.scene.samples;
-    options.pixel = parse_pixel(run.pixel, scene.settings[0]);
+    options.pixel = parse_pixel(run.pixel, run.scene.size);
     options.stop = &is_interrupted;
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
+    SceneData scene = load_from_flags(run.scene);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options.samples);
     backend->upload(scene);
 

@@ -44,7 +44,7 @@ int parse_bounces(const std::string& text)
     if (text == "none") return BOUNCES_UNLIMITED;
     int bounces = 0;
     if (!parse_number(text, bounces) || bounces < 0 || bounces > 1000000)
-        refuse("--bounces", text, "give a number of scattering events from 0 to 1000000, or none");
+        refuse("--bounces", text, "not a number of scattering events; give 0 to 1000000, or none");
     return bounces;
 }
 
@@ -77,7 +77,10 @@ LoadOptions load_options_from(const SceneFlags& flags)
     load.environment_rotation = float(flags.environment_rotation_degrees * std::numbers::pi / 180);
     if (!(load.environment_scale >= 0 && std::isfinite(load.environment_scale)))
         refuse("--env-scale", fmt::format("{}", load.environment_scale),
-               "give a finite factor, 0 or more");
+               "not a factor; give a finite one, 0 or more");
+    if (!(std::abs(flags.environment_rotation_degrees) <= 1e6))
+        refuse("--env-rotation", fmt::format("{}", flags.environment_rotation_degrees),
+               "out of range; give degrees from -1000000 to 1000000");
     return load;
 }
 

@@ -72,6 +72,7 @@ void write_picture(const std::string& path, const Picture& picture,
 // Throws now what write_picture would throw after the rendering: unknown extension, no such folder,
 // not writable.
 void check_writable(const std::string& path);
+void check_file_writable(const std::string& path);  // of any kind: by write_file_whole
 
 // Puts bytes at a path by way of a temporary name in the same folder; for any file that must not be
 // half-written.

@@ -285,7 +285,9 @@ void write_file_whole(const std::string& path, std::string_view bytes)
 void check_writable(const std::string& path)
 {
     encoder_of(path);
-    TemporaryFile probe(path);
+    check_file_writable(path);
 }
+
+void check_file_writable(const std::string& path) { TemporaryFile probe(path); }
 
 }  // namespace diptych::image
