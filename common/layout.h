@@ -76,7 +76,7 @@ typedef struct {
     int triangle_count;
     int root_node;    // of the mesh's tree in bvh_nodes
     int is_mirrored;  // the determinant is negative: the winding that faces front is reversed
-    int object;  // the number of the placement, for the layer of object ids
+    int object;       // the number of the placement, for the layer of object ids
     int reserved[3];
 } Instance;
 

@@ -1,6 +1,6 @@
 #include "kernels_cpu/chunk.hpp"
 
-#include "kernels_cpu/path_rows.hpp"
+#include "common/as_cpp/path_rows.hpp"
 
 #include <algorithm>
 #include <chrono>

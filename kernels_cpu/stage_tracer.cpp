@@ -1,6 +1,6 @@
 #include "kernels_cpu/stage_tracer.hpp"
 
-#include "kernels_cpu/path_rows.hpp"
+#include "common/as_cpp/path_rows.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "host/commands/render_report.hpp"
 
 #include "backends/sha256.hpp"
-#include "kernels_cpu/path_rows.hpp"
+#include "common/as_cpp/path_rows.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 #include "host/commands/trace_comparison.hpp"
 
-#include "kernels_cpu/path_rows.hpp"
+#include "common/as_cpp/path_rows.hpp"
 
 #include <fmt/format.h>
 
