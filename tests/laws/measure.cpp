@@ -192,4 +192,36 @@ SceneData finish(SceneBuilder& scene, int bounces)
     return data;
 }
 
+SceneData busy_scene(int width, int height)
+{
+    SceneBuilder scene;
+    Picture checks{4, 4, {}, {}, true, 0};
+    for (int k = 0; k < 16; ++k) {
+        const std::uint8_t value = (k + k / 4) % 2 ? 220 : 60;
+        checks.bytes.insert(checks.bytes.end(), {value, 128, value, std::uint8_t(k * 16)});
+    }
+    const int image = scene.add_image(checks);
+    const int floor = scene.add_material({.roughness = 0.4f, .base_texture = {.image = image}});
+    const int leaf = scene.add_material(
+        {.specular = 0, .alpha_mode = ALPHA_BLEND, .base_texture = {.image = image}});
+    const int metal =
+        scene.add_material({.metallic = 1, .roughness = 0.2f, .normal_texture = {.image = image}});
+    const int lamp = scene.add_material({.emission = {5, 4, 3}});
+    scene.place(scene.add_mesh(quad_mesh({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, floor)));
+    scene.place(scene.add_mesh(quad_mesh({-1, 0.1, 0.6}, {1, 0, 0}, {0, 1, 0}, leaf)));
+    scene.place(scene.add_mesh(quad_mesh({-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, lamp)));
+    const int ball = scene.add_mesh(sphere_mesh({0, 0, 0}, 0.3, 24, metal));
+    for (int k = 0; k < 4; ++k) scene.place(ball, translation(0.7 * k - 1, 0.3, -0.2 * k));
+    scene.add_light({.kind = LIGHT_SPOT,
+                     .intensity = {4, 4, 4},
+                     .position = {1, 2, 1},
+                     .direction = {-0.5, -1, -0.5}});
+    scene.set_environment(environment_of([](const Vec3& w) { return 0.3 + 0.2 * w[1]; }, 8, 8));
+    scene.set_camera({.eye = {0.5, 1.2, 3}, .target = {0, 0.4, 0}});
+    scene.set_picture_size(width, height);
+    SceneData data = scene.finish();
+    data.settings[0].max_bounces = 6;
+    return data;
+}
+
 }  // namespace laws

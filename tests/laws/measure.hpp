@@ -50,8 +50,7 @@ protected:
     INSTANTIATE_TEST_SUITE_P(Laws, suite, testing::Values("cpu", "twin", "double", "opencl"), \
                              [](const auto& info) { return info.param; })
 
-// A quad facing its camera's side or a room seen from within; materials without specular
-// reflection, as most laws want them.
+// A material without specular reflection, as most laws want it.
 diptych::MaterialInput lambert(float reflectance, float emission = 0);
 
 // A box seen from within: its six sides face inwards.
@@ -75,5 +74,8 @@ diptych::Picture environment_of(const std::function<double(const diptych::Vec3&)
 void look(diptych::SceneBuilder& scene, const diptych::Vec3& eye, const diptych::Vec3& target,
           double half_height);
 diptych::SceneData finish(diptych::SceneBuilder& scene, int bounces = BOUNCES_UNLIMITED);
+
+// Something of everything: textures, normal map, instances, alpha, lamps, a spot, sky.
+diptych::SceneData busy_scene(int width, int height);
 
 }  // namespace laws

@@ -1,0 +1,77 @@
+"""Every loop of every shared stage runs over paths in 256- or 512-bit vectors.
+
+Usage: vectorised_test.py STAGES_OBJECT   (kernels_cpu/stages.cpp compiled for the vector kernels)
+
+A loop that the compiler leaves scalar still has a few wide moves, which copy structures, but no wide
+arithmetic; so arithmetic, comparisons and gathers on wide registers are counted in the machine code
+of each. Prints `stage: vectorised` or `stage: not vectorised ...` for each stage.
+"""
+import os
+import re
+import subprocess
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+# The smallest loop, add_emission without textures, has 25 wide operations when vectorised.
+LEAST = 12
+# Instructions that only bring values to their places.
+PLACING = re.compile(r"v(mov|insert|extract|perm|unpck|punpck|shuf|pshuf|broadcast|pbroadcast|zero|align)")
+
+
+def shared_stages():
+    with open(os.path.join(ROOT, "common/stages/stages.h"), encoding="utf-8") as text:
+        return re.findall(r"X\((\w+), shared,", text.read())
+
+
+def wide_operations(path):
+    """(stage, variant) -> number of wide operations in the machine code of its loop."""
+    command = ["objdump", "-d", "--no-show-raw-insn", "-C", path]
+    code = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    counts, current = {}, None
+    for line in code.splitlines():
+        if line.endswith(">:"):
+            found = re.search(r"(\w+)_loop<(\d+)>", line)
+            current = (found[1], int(found[2])) if found else None
+            if current:
+                counts[current] = 0
+        elif current and re.search(r"%[yz]mm", line):
+            instruction = line.split("\t")[-1]
+            counts[current] += not PLACING.match(instruction)
+    return counts
+
+
+def reason_to_skip(path):
+    """Why this object cannot be judged, or None."""
+    strings = subprocess.run(["objdump", "-t", path], capture_output=True, text=True).stdout
+    if re.search(r"__(asan|tsan|ubsan)_", strings):
+        return "built for a sanitizer, whose checks keep loops scalar"
+    comment = subprocess.run(["objdump", "-s", "-j", ".comment", path], capture_output=True, text=True)
+    if "clang" in comment.stdout:
+        return "built by clang; the loops are shaped for g++"
+    if "%ymm" not in subprocess.run(["objdump", "-d", path], capture_output=True, text=True).stdout:
+        return "built for a processor without 256-bit vectors" if not has_avx2() else None
+    return None
+
+
+def has_avx2():
+    with open("/proc/cpuinfo", encoding="utf-8") as text:
+        return " avx2 " in text.read()
+
+
+def main(path):
+    reason = reason_to_skip(path)
+    if reason:
+        print(f"skipped: {reason}")
+        return 77
+    counts = wide_operations(path)
+    failed = 0
+    for stage in shared_stages():
+        loops = {variant: count for (name, variant), count in counts.items() if name == stage}
+        scalar = sorted(variant for variant, count in loops.items() if count < LEAST)
+        failed += not loops or bool(scalar)
+        said = "vectorised" if loops and not scalar else f"not vectorised: variants {scalar} of {len(loops)}"
+        print(f"{stage}: {said} (at least {min(loops.values(), default=0)} wide operations)")
+    return int(failed > 0)
+
+
+sys.exit(main(sys.argv[1]))
