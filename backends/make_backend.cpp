@@ -8,7 +8,7 @@ namespace diptych {
 
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options)
 {
-    if (name == "cpu") return make_cpu_backend(kernels_vector::set, options);
+    if (name == "cpu") return make_cpu_backend(vector_kernels(), options);
     if (name == "twin")
         return make_cpu_backend(options.debug_kernels ? kernels_debug::set : kernels_scalar::set,
                                 options);

@@ -36,9 +36,10 @@ struct KernelSet {
     unsigned (*covered_effects)(unsigned effects);
 };
 
-namespace kernels_vector {  // vectorised across paths; no intersection (Embree does it)
-extern const KernelSet set;
-}
+// Vectorised across paths, for the widest vectors that this machine has and the build provides; no
+// intersection (Embree does it).
+const KernelSet& vector_kernels();
+
 namespace kernels_scalar {  // the same sources, scalar, with the BVH walk: what OpenCL runs
 extern const KernelSet set;
 }
