@@ -1,8 +1,8 @@
 // Stage by stage: every row of STAGES gives the same numbers on every backend, to the bit where
 // that is promised (D1), else for all but one ray in a thousand (D2).
+#include "common/as_cpp/path_rows.hpp"
 #include "host/commands/trace_comparison.hpp"
 #include "host/scene/load.hpp"
-#include "common/as_cpp/path_rows.hpp"
 #include "tests/laws/measure.hpp"
 
 #include <cmath>
