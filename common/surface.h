@@ -197,7 +197,7 @@ SHARED float3 surface_smooth_normal(const Scene* scene, int instance, int triang
                        is_usable ? n.z * scale : face_normal.z);
 }
 
-// The low bit of a packed tangent is its handedness: 1 for -1.
+// The low bit of a packed tangent is its handedness in its mesh's own space: 1 for -1.
 SHARED float3 surface_tangent(const Scene* scene, int instance, int triangle, float2 weights)
 {
     const float3 a = normal_unpack(scene->tangents[scene->triangles[triangle].vertex0]);
@@ -225,7 +225,9 @@ SHARED float3 surface_mapped_normal(const Scene* scene, int instance, int triang
     const float3 t = raw - n * vec_dot(n, raw);
     const float t_length2 = vec_dot(t, t);
     const uint packed = scene->tangents[scene->triangles[triangle].vertex0];
-    const float handedness = (packed & 1u) != 0u ? -1.0f : 1.0f;
+    float handedness = (packed & 1u) != 0u ? -1.0f : 1.0f;
+    if (uses(scene, EFFECT_INSTANCES))  // a mirror image of a right-handed frame is left-handed
+        handedness = scene->instances[instance].is_mirrored ? -handedness : handedness;
     const float3 tangent = t * (t_length2 > 0.0f ? 1.0f / math_sqrt(t_length2) : 0.0f);
     const float3 bitangent = vec_cross(n, tangent) * handedness;
 
