@@ -73,7 +73,7 @@ TEST_P(Furnace, UnlimitedBouncesReachTheLimit)
 // Roulette must not let the weights of long paths grow: the mean path has a hundred bounces.
 TEST_P(Furnace, AlmostLosslessRoomReachesTheLimit)
 {
-    EXPECT_TRUE(obeys(measure(closed_furnace(0.99f, BOUNCES_UNLIMITED), 3), 50));
+    EXPECT_TRUE(obeys(measure(closed_furnace(0.99f, BOUNCES_UNLIMITED)), 50));
 }
 
 // GI-3: in a sphere, each bounce of light spreads evenly over the wall, wherever its source is.
