@@ -1,0 +1,118 @@
+// The command line as users meet it: help, mistakes, exit codes.
+#include "tests/host/commands/program.hpp"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+const std::vector<std::string> commands = {"render", "compare", "explain", "devices", "selftest"};
+
+TEST(CommandLine, HelpIsThereForEveryCommandAndNamesExitCodes)
+{
+    const Outcome all = run_diptych({"--help"});
+    EXPECT_EQ(all.exit_code, 0);
+    for (const std::string& command : commands) {
+        EXPECT_NE(all.out.find(command), std::string::npos) << command;
+        const Outcome help = run_diptych({command, "--help"});
+        EXPECT_EQ(help.exit_code, 0) << command;
+        EXPECT_NE(help.out.find("xit code"), std::string::npos) << command << "\n" << help.out;
+        EXPECT_EQ(help.err, "");
+    }
+    EXPECT_NE(run_diptych({"--version"}).out.find("diptych 0."), std::string::npos);
+}
+
+TEST(CommandLine, RenderHelpNamesEveryOption)
+{
+    const std::string help = run_diptych({"render", "--help"}).out;
+    for (const char* flag :
+         {"SCENE",       "--output",        "--backend",       "--device",       "--size",
+          "--samples",   "--seed",          "--threads",       "--memory",       "--env",
+          "--camera",    "--eye",           "--target",        "--up",           "--fov",
+          "--pixel",     "--bounces",       "--filter",        "--quiet",        "--strict",
+          "--json",      "--exposure",      "--view",          "--reproducible", "--launch-ms",
+          "--fast-math", "--debug-kernels", "--allow-outside", "--env-rotation", "--env-scale"})
+        EXPECT_NE(help.find(flag), std::string::npos) << flag;
+}
+
+// One line that begins "diptych: " and the exit code 2.
+void expect_refusal(const std::vector<std::string>& arguments, const std::string& names)
+{
+    const Outcome outcome = run_diptych(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.text();
+    const std::vector<std::string> lines = outcome.err_lines();
+    ASSERT_EQ(lines.size(), 1u) << outcome.text();
+    EXPECT_EQ(lines[0].find("diptych: "), 0u) << lines[0];
+    EXPECT_NE(lines[0].find(names), std::string::npos) << lines[0];
+    EXPECT_EQ(outcome.out, "");
+}
+
+TEST(CommandLine, MistakesAreToldInOneLine)
+{
+    expect_refusal({}, "--help");
+    expect_refusal({"paint"}, "paint");
+    for (const std::string& command : commands)
+        expect_refusal({command, "--nonsense"}, "--nonsense");
+    expect_refusal({"render", "--threads", "many"}, "--threads");
+    expect_refusal({"render", "--threads", "-1"}, "--threads");
+    expect_refusal({"render", "--samples"}, "--samples");
+    expect_refusal({"compare"}, "");
+    expect_refusal({"compare", "a.exr", "b.exr", "--seed", "3"}, "--backends");
+    expect_refusal({"compare", "--backends", "cpu"}, "--backends");
+    expect_refusal({"compare", "--backends", "cpu,twin", "--bound", "wide"}, "--bound");
+    expect_refusal({"selftest", "--backend", "twin"}, "twin");
+    expect_refusal({"render", "--backend", "abacus", "--quiet"}, "abacus");
+    expect_refusal({"render", "--debug-kernels"}, "--debug-kernels");
+}
+
+TEST(CommandLine, DevicesAlwaysAnswers)
+{
+    const Outcome outcome = run_diptych({"devices"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+    EXPECT_NE(outcome.out.find("cpu"), std::string::npos);
+    const Outcome bare =
+        run_diptych({"devices"}, {.environment = {{"OCL_ICD_VENDORS", "/nowhere"}}});
+    EXPECT_EQ(bare.exit_code, 0) << bare.text();
+    EXPECT_NE(bare.out.find("OpenCL"), std::string::npos) << bare.out;
+}
+
+TEST(CommandLine, SelftestPassesTheProcessor)
+{
+    const Outcome outcome = run_diptych({"selftest", "--backend", "cpu"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+    EXPECT_NE(outcome.out.find("sample_bsdf"), std::string::npos);
+    EXPECT_EQ(outcome.out.find("FAILED"), std::string::npos) << outcome.out;
+}
+
+TEST(CommandLine, ExplainsTheDemo)
+{
+    const Outcome outcome = run_diptych({"explain"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+    EXPECT_NE(outcome.out.find("material lamp"), std::string::npos) << outcome.out;
+}
+
+TEST(CommandLine, CompareNamesBothBackends)
+{
+    const Outcome outcome = run_diptych(
+        {"compare", "--backends", "cpu,twin", "--size", "32x32", "--samples", "2", "--quiet"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+    EXPECT_NE(outcome.out.find("of 1024 pixels differ"), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.err, "");
+}
+
+TEST(CommandLine, OnePixelHasTheValueOfThePicture)
+{
+    const auto pixel = [](std::vector<std::string> more) {
+        std::vector<std::string> words = {"render", "--size",  "32x32",   "--samples",
+                                          "3",      "--quiet", "--pixel", "12,20"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome outcome = run_diptych(words);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        EXPECT_EQ(outcome.out.find("pixel 12,20: "), 0u) << outcome.text();
+        return outcome.out;
+    };
+    const std::string twin = pixel({"--backend", "twin"});
+    EXPECT_EQ(pixel({"--backend", "twin", "--debug-kernels"}), twin);
+    EXPECT_EQ(pixel({"--backend", "twin", "--threads", "1", "--memory", "1M"}), twin);
+}
+
+}  // namespace
