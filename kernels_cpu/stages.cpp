@@ -54,6 +54,7 @@ Paths paths_from(const PathView& view)
 // it must be a constant.
 constexpr unsigned variants[] = {
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS,
+    EFFECT_EMISSION | EFFECT_SPECULAR,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
         EFFECT_BASE_TEXTURE,
@@ -112,9 +113,9 @@ ENTRY_walk(intersect) ENTRY_walk(occlusion)
 {
     const int variant = variant_for(effects);
 #if VECTORISED
-#define LOOPS_OF(name)                                                                           \
-    static constexpr StageLoop name##_loops[] = {name##_loop<0>, name##_loop<1>, name##_loop<2>, \
-                                                 name##_loop<3>, name##_loop<4>};                \
+#define LOOPS_OF(name)                                                                            \
+    static constexpr StageLoop name##_loops[] = {name##_loop<0>, name##_loop<1>, name##_loop<2>,  \
+                                                 name##_loop<3>, name##_loop<4>, name##_loop<5>}; \
     if (stage == STAGE_##name) return name##_loops[variant];
 #else
 #define LOOPS_OF(name) \

@@ -1,7 +1,7 @@
 """Writes common/materials/ggx_albedo_table.h: directional albedo of the GGX lobe with height-correlated Smith masking.
 
 usage: python3 ci/generate/ggx_albedo.py > common/materials/ggx_albedo_table.h     (needs numpy; half a minute)
-Entry (row r, column c): roughness r / (N - 1), alpha = roughness^2; cosine (c / (N - 1))^2. Quadrature over visible normals
+Entry (row r, column c): roughness (r / (N - 1))^2, alpha = roughness^2; cosine (c / (N - 1))^2. Quadrature over visible normals
 (Heitz, JCGT 7(4), 2018): E = mean of G2 / G1; B = the share that carries Schlick's (1 - v.h)^5."""
 import numpy as np
 
@@ -50,7 +50,7 @@ def average(row):
 table = np.zeros((N, N, 2))
 for r in range(N):
     for c in range(N):
-        mu, alpha = (c / (N - 1)) ** 2, (r / (N - 1)) ** 2
+        mu, alpha = (c / (N - 1)) ** 2, (r / (N - 1)) ** 4
         table[r, c] = directional_albedo(max(mu, 1e-4), max(alpha, 1e-5))
 averages = [[average(table[r, :, k]) for k in range(2)] for r in range(N)]
 

@@ -53,7 +53,7 @@ typedef struct {
 SHARED float2 ggx_albedo(float cosine, float roughness)
 {
     const float across = math_sqrt(math_clamp(cosine, 0.0f, 1.0f)) * (float)(GGX_ALBEDO_SIZE - 1);
-    const float along = math_clamp(roughness, 0.0f, 1.0f) * (float)(GGX_ALBEDO_SIZE - 1);
+    const float along = math_sqrt(math_clamp(roughness, 0.0f, 1.0f)) * (float)(GGX_ALBEDO_SIZE - 1);
     const int column = across >= (float)(GGX_ALBEDO_SIZE - 2) ? GGX_ALBEDO_SIZE - 2 : (int)across;
     const int row = along >= (float)(GGX_ALBEDO_SIZE - 2) ? GGX_ALBEDO_SIZE - 2 : (int)along;
     const float x = across - (float)column;
@@ -74,7 +74,7 @@ SHARED float2 ggx_albedo(float cosine, float roughness)
 // The same averaged over the hemisphere, cosine-weighted.
 SHARED float2 ggx_average(float roughness)
 {
-    const float along = math_clamp(roughness, 0.0f, 1.0f) * (float)(GGX_ALBEDO_SIZE - 1);
+    const float along = math_sqrt(math_clamp(roughness, 0.0f, 1.0f)) * (float)(GGX_ALBEDO_SIZE - 1);
     const int row = along >= (float)(GGX_ALBEDO_SIZE - 2) ? GGX_ALBEDO_SIZE - 2 : (int)along;
     const float y = along - (float)row;
     return make_float2(ggx_average_all[row] * (1.0f - y) + ggx_average_all[row + 1] * y,
