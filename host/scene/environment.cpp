@@ -146,8 +146,13 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
         }
     }
     data.environment_cells = alias_table(weights);
-    s.cell_columns = data.environment_cells.empty() ? 0 : columns;
-    s.cell_rows = data.environment_cells.empty() ? 0 : rows;
+    s.cell_columns = columns;
+    s.cell_rows = rows;
+    if (data.environment_cells.empty()) {
+        // Black: never chosen, but kernels load before they select.
+        data.environment_cells = {AliasEntry{1, 0, 0, 0}};
+        s.cell_columns = s.cell_rows = 1;
+    }
     if (file.bad_texels > 0) {
         data.notices.push_back("environment: " + std::to_string(file.bad_texels) +
                                " values were NaN, infinite or negative; they were replaced");

@@ -153,6 +153,18 @@ TEST_F(BadInput, EnvironmentsThatCannotBeRead)
     expect_refusal({scene, "--env-rotation", "nan"}, "--env-rotation");
 }
 
+TEST_F(BadInput, ABlackEnvironmentIsDarkAndNoError)
+{
+    const std::string pixel(4, '\0');
+    const std::string black =
+        in_.write("black.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + pixel);
+    for (const char* backend : {"cpu", "twin", "double"}) {
+        const Outcome outcome =
+            render({"--env", black, "--size", "16x16", "--samples", "1", "--backend", backend});
+        EXPECT_EQ(outcome.exit_code, 0) << backend << outcome.text();
+    }
+}
+
 TEST_F(BadInput, SizesAndSamplesOfNoSense)
 {
     for (const char* size : {"0x0", "16x0", "-4x4", "16", "x", "16x16x16", "99999x1", "60000x60000",
