@@ -107,7 +107,9 @@ std::optional<FaultPlace> find_fault(Backend& backend, const Faults& faults, int
     const WorkItem item{faults.x, faults.y, faults.first_sample, 0};
     const int at_once = rest >= QUANTUM ? QUANTUM : 1 << (31 - __builtin_clz(unsigned(rest)));
     std::optional<FaultPlace> place;
+    int bounce = 0;
     backend.trace({{&item, 1}, at_once, 0}, [&](const StageState& state) {
+        bounce = state.bounce;
         for (size_t p = 0; !place && p < size_t(state.paths); ++p)
             if (const char* buffer = faulty_buffer(state, p))
                 place = FaultPlace{faults.x,
@@ -117,6 +119,9 @@ std::optional<FaultPlace> find_fault(Backend& backend, const Faults& faults, int
                                    stage_names[state.stage],
                                    buffer};
     });
+    if (!place)  // each sample is finite, their sum is not
+        place = FaultPlace{faults.x, faults.y,     faults.first_sample,
+                           bounce,   "accumulate", "sum_radiance"};
     return place;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace diptych {
 namespace {
@@ -15,6 +16,11 @@ int even_bits(int k)
     for (int bit = 0; bit < BLOCK_SHIFT; ++bit) out |= (k >> (2 * bit) & 1) << bit;
     return out;
 }
+
+// Sums of finite samples may overflow; below this, those of all batches together do not.
+constexpr float largest_sum = std::numeric_limits<float>::max() / (2 * batch_count);
+
+bool has_room(float sum, float more) { return std::abs(sum + more) <= largest_sum; }
 
 }  // namespace
 
@@ -47,22 +53,26 @@ void Film::add(const Dispatch& dispatch, const Results& results)
             const int y = item.y + even_bits(in_item >> 1);
             if (x >= width_ || y >= height_) continue;
             const int r = (int(k) << dispatch.pixel_shift) | in_item;
-            if (results.fault[size_t(r)] > 0) {
+            const bool is_added = add_pixel(y * width_ + x, batch, dispatch, results, r);
+            const int dropped = is_added ? results.fault[size_t(r)] : dispatch.samples;
+            if (dropped > 0) {
                 if (faults_.count == 0) faults_ = {0, x, y, item.first_sample};
-                faults_.count += unsigned(results.fault[size_t(r)]);
+                faults_.count += unsigned(dropped);
             }
-            add_pixel(y * width_ + x, batch, dispatch, results, r);
         }
     }
 }
 
-void Film::add_pixel(int pixel, int batch, const Dispatch& dispatch, const Results& results, int r)
+bool Film::add_pixel(int pixel, int batch, const Dispatch& dispatch, const Results& results, int r)
 {
     const size_t p = size_t(pixel);
     const size_t n = size_t(dispatch.results());
     const size_t b = p * size_t(batches_) + size_t(batch);
+    bool fits = true;
+    for (size_t c = 0; c < 3; ++c)
+        fits = fits && has_room(radiance_[b * 3 + c], results.sum_radiance[c * n + size_t(r)]);
     for (size_t c = 0; c < 3; ++c) {
-        radiance_[b * 3 + c] += results.sum_radiance[c * n + size_t(r)];
+        if (fits) radiance_[b * 3 + c] += results.sum_radiance[c * n + size_t(r)];
         albedo_[p * 3 + c] += results.sum_albedo[c * n + size_t(r)];
         normal_[p * 3 + c] += results.sum_normal[c * n + size_t(r)];
     }
@@ -73,6 +83,7 @@ void Film::add_pixel(int pixel, int batch, const Dispatch& dispatch, const Resul
         material_[p] = results.material_id[size_t(r)];
     }
     batch_samples_[b] += dispatch.samples;
+    return fits;
 }
 
 std::vector<float> Film::means(const std::vector<float>& sums, int channels) const

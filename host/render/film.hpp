@@ -38,7 +38,8 @@ public:
     bool has_standard_error() const { return batches_ == batch_count; }
 
 private:
-    void add_pixel(int pixel, int batch, const Dispatch& dispatch, const Results& results, int r);
+    // False when the radiance would make the sum overflow; it is left out then.
+    bool add_pixel(int pixel, int batch, const Dispatch& dispatch, const Results& results, int r);
     std::vector<float> standard_error() const;
     std::vector<float> means(const std::vector<float>& sums, int channels) const;
 

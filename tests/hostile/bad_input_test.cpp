@@ -247,13 +247,26 @@ TEST_F(BadInput, WhatIsNotFiniteNeverReachesAPicture)
     const std::string scene = in_.write("blinding.gltf", blinding());
     const std::vector<std::string> view = {scene,   "--size",    "16x16",    "--samples", "8",
                                            "--eye", "0.3,0.3,2", "--target", "0.3,0.3,0"};
-    const Outcome outcome = render(view);
-    if (outcome.exit_code == 2) {  // refused as a whole
-        EXPECT_EQ(outcome.err_lines().size(), 1u) << outcome.text();
-        EXPECT_TRUE(out_.files().empty());
-        return;
-    }
+    const Outcome outcome = run_diptych([&] {
+        std::vector<std::string> words = {"render", "-o", out_ / "out.exr", "--backend", "twin"};
+        words.insert(words.end(), view.begin(), view.end());
+        return words;
+    }());
     EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+    EXPECT_NE(outcome.err.find("samples were not finite and were dropped, the first at pixel"),
+              std::string::npos)
+        << outcome.text();
+    std::vector<std::string> pixel = view;
+    pixel.insert(pixel.end(), {"--pixel", "8,8"});
+    EXPECT_EQ(render(pixel).out, "pixel 8,8: 0 0 0\n");
+}
+
+TEST_F(BadInput, StrictMakesWhatIsNotFiniteAnError)
+{
+    const std::string scene = in_.write("blinding.gltf", blinding());
+    expect_refusal({scene, "--size", "16x16", "--samples", "8", "--eye", "0.3,0.3,2", "--target",
+                    "0.3,0.3,0", "--strict"},
+                   "pixel");
 }
 
 }  // namespace
