@@ -62,7 +62,7 @@ constexpr unsigned variants[] = {
         EFFECT_BASE_TEXTURE | EFFECT_SURFACE_TEXTURES | EFFECT_NORMAL_MAP,
     ~0u,
 };
-constexpr int variant_count = int(sizeof(variants) / sizeof(variants[0]));
+[[maybe_unused]] constexpr int variant_count = int(sizeof(variants) / sizeof(variants[0]));
 
 #if VECTORISED
 #define OVER_PATHS _Pragma("omp simd")
