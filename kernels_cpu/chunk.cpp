@@ -1,6 +1,7 @@
 #include "kernels_cpu/chunk.hpp"
 
 #include "common/as_cpp/path_rows.hpp"
+#include "kernels_cpu/bounce_stages.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -90,16 +91,7 @@ void Chunk::trace_paths(int count)
     bounce_ = 0;
     run_stage(STAGE_generate_paths, count);
     for (int live = count; live > 0; ++bounce_) {
-#define RUN_each_bounce(name) run_stage(STAGE_##name, live);
-#define RUN_first_bounce(name) \
-    if (bounce_ == 0) run_stage(STAGE_##name, live);
-#define RUN_once(name)
-#define RUN_at_end(name)
-#define RUN(name, body, when, needs)                                                          \
-    if (STAGE_##name != STAGE_compact && ((needs) == 0 || (scene_.effects & (needs)) != 0)) { \
-        RUN_##when(name)                                                                      \
-    }
-        STAGES(RUN)
+        for_stages_of_bounce(scene_.effects, bounce_, [&](Stage stage) { run_stage(stage, live); });
         live = compact(live);
     }
 }

@@ -1,6 +1,7 @@
 #include "kernels_cpu/stage_tracer.hpp"
 
 #include "common/as_cpp/path_rows.hpp"
+#include "kernels_cpu/bounce_stages.hpp"
 
 #include <algorithm>
 
@@ -38,16 +39,7 @@ void StageTracer::run(const std::function<void(Stage, int, Planes)>& after_stage
     };
     run_row(STAGE_generate_paths, 0);
     for (int bounce = 0; is_any_alive(); ++bounce) {
-#define RUN_each_bounce(name) run_row(STAGE_##name, bounce);
-#define RUN_first_bounce(name) \
-    if (bounce == 0) run_row(STAGE_##name, bounce);
-#define RUN_once(name)
-#define RUN_at_end(name)
-#define RUN(name, body, when, needs)                                                          \
-    if (STAGE_##name != STAGE_compact && ((needs) == 0 || (scene_.effects & (needs)) != 0)) { \
-        RUN_##when(name)                                                                      \
-    }
-        STAGES(RUN)
+        for_stages_of_bounce(scene_.effects, bounce, [&](Stage stage) { run_row(stage, bounce); });
     }
 }
 

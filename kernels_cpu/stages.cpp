@@ -14,7 +14,8 @@ namespace diptych::KERNEL_SET {
 
 #include "common/stages/bodies.h"
 #if !VECTORISED
-#include "kernels_cpu/walk.hpp"
+#include "common/stages/intersect.h"
+#include "common/stages/occlusion.h"
 #endif
 
 namespace {

@@ -153,7 +153,7 @@ int run_render_command(const RenderCommand& command)
     if (faults.count > 0) fmt::print(stderr, "notice: {}\n", fault_text(faults, place));
 
     image::Picture picture = result.film.picture();
-    add_metadata(picture, run, scene, *backend, result);
+    if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
     for (const std::string& path : run.outputs) image::write_picture(path, picture, write);
     if (options.pixel) print_pixel(picture, *options.pixel);
     if (!run.is_quiet) print_summary(run, result);
