@@ -257,7 +257,8 @@ TEST(Environment, A_black_one_is_no_light)
     const SceneData data = scene.finish();
     EXPECT_TRUE(data.lights.empty());
     EXPECT_EQ(data.settings[0].environment_light, -1);
-    EXPECT_TRUE(data.environment_cells.empty());
+    ASSERT_EQ(data.environment_cells.size(), 1u) << "one cell, so that kernels may read it";
+    EXPECT_EQ(data.environment_cells[0].probability, 1);
 }
 
 }  // namespace
