@@ -91,15 +91,15 @@ TX_ARGUMENT(sam2D)
 // of three words take four.
 #define TX_VIEW(T, stride)                                                         \
     typedef struct {                                                               \
-        const T* local;                                                            \
+        const T* own;                                                              \
         TX_TABLE(T) table;                                                         \
         int word;                                                                  \
         int length;                                                                \
     } tx_view_##T;                                                                 \
-    SHARED tx_view_##T tx_view_of_local_##T(const T* local, int length)            \
+    SHARED tx_view_##T tx_view_of_local_##T(const T* own, int length)              \
     {                                                                              \
         tx_view_##T v;                                                             \
-        v.local = local;                                                           \
+        v.own = own;                                                               \
         v.table = 0;                                                               \
         v.word = 0;                                                                \
         v.length = length;                                                         \
@@ -108,7 +108,7 @@ TX_ARGUMENT(sam2D)
     SHARED tx_view_##T tx_view_of_table_##T(TX_TABLE(T) table, int length)         \
     {                                                                              \
         tx_view_##T v;                                                             \
-        v.local = 0;                                                               \
+        v.own = 0;                                                                 \
         v.table = table;                                                           \
         v.word = 0;                                                                \
         v.length = length;                                                         \
@@ -117,7 +117,7 @@ TX_ARGUMENT(sam2D)
     SHARED tx_view_##T tx_argument_view_##T(TextureContext* tx, int region, int k) \
     {                                                                              \
         tx_view_##T v;                                                             \
-        v.local = 0;                                                               \
+        v.own = 0;                                                                 \
         v.table = 0;                                                               \
         v.word = (int)tx_word(tx, region + 4 * k + 1);                             \
         v.length = (int)tx_word(tx, region + 4 * k + 2);                           \
@@ -126,7 +126,7 @@ TX_ARGUMENT(sam2D)
     SHARED T tx_at_##T(TextureContext* tx, tx_view_##T v, int i)                   \
     {                                                                              \
         const int k = tx_index(tx, i, v.length);                                   \
-        if (v.local) return v.local[k];                                            \
+        if (v.own) return v.own[k];                                                \
         if (v.table) return v.table[k];                                            \
         return tx_load_##T(tx, v.word + stride * k);                               \
     }

@@ -105,9 +105,10 @@
 #define TX_ROWS_OF_WIDTH(n)                                                                        \
     TX_FLOAT_1(TX_F1_##n)                                                                          \
     TX_FLOAT_2(TX_F2_##n)                                                                          \
-    TX_FLOAT_3(TX_F3_##n) TX_FLOAT_INT(TX_FI_##n) TX_TEST_1(TX_T1_##n) TX_TEST_2(                  \
-        TX_T2_##n) TX_INT_2(TX_I2_##n) TX_UINT_2(TX_U2_##n) TX_INT_3(TX_I3_##n)                    \
-        TX_INT_3(TX_U3_##n) TX_CONVERT(ilogb, int, float, n) TX_CONVERT(                           \
+    TX_FLOAT_3(TX_F3_##n)                                                                          \
+    TX_FLOAT_INT(TX_FI_##n)                                                                        \
+    TX_TEST_1(TX_T1_##n) TX_TEST_2(TX_T2_##n) TX_INT_2(TX_I2_##n) TX_UINT_2(TX_U2_##n)             \
+        TX_INT_3(TX_I3_##n) TX_INT_3(TX_U3_##n) TX_CONVERT(ilogb, int, float, n) TX_CONVERT(       \
             nan, float, uint, n) TX_CONVERT(abs, uint, int, n) TX_CONVERT(abs, uint, uint, n)      \
             TX_CONVERT(popcount, int, int, n) TX_CONVERT(popcount, uint, uint, n) TX_CONVERT(      \
                 clz, int, int, n) TX_CONVERT(clz, uint, uint, n) TX_CAST(as, int, float, n)        \
