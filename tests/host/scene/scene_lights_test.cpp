@@ -258,7 +258,7 @@ TEST(Environment, A_black_one_is_no_light)
     EXPECT_TRUE(data.lights.empty());
     EXPECT_EQ(data.settings[0].environment_light, -1);
     ASSERT_EQ(data.environment_cells.size(), 1u) << "one cell, so that kernels may read it";
-    EXPECT_EQ(data.environment_cells[0].probability, 1);
+    EXPECT_EQ(data.environment_cells[0].probability, 0);
 }
 
 }  // namespace
