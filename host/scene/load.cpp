@@ -66,6 +66,7 @@ SceneData load_scene(const std::filesystem::path& file, const LoadOptions& optio
         fail("document: " + printable(error.what()) + "; repair the file");
     }
     apply_options(scene, options);
+    scene.copy_small_meshes(options.copied_triangles);
     try {
         SceneData data = scene.finish();
         if (data.triangles.empty()) {

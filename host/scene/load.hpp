@@ -24,6 +24,7 @@ struct LoadOptions {
     int scene_index = -1;        // of the file's scenes; -1: its default
     unsigned disabled_effects = 0;
     size_t max_image_pixels = size_t(1) << 28;
+    size_t copied_triangles = 64;  // SceneBuilder::copy_small_meshes; 0: every mesh is stored once
 };
 
 // Loads a .gltf or .glb file. Angles in radians, +Y up, lengths in metres; candela and lux are

@@ -63,6 +63,31 @@ void SceneBuilder::place(int mesh, const Transform& to_world, const std::string&
     placements_.push_back({mesh, to_world, shown});
 }
 
+void SceneBuilder::copy_small_meshes(size_t triangles)
+{
+    std::vector<size_t> placed(meshes_.size(), 0), size(meshes_.size(), 0);
+    for (size_t m = 0; m < meshes_.size(); ++m) {
+        for (const MeshPart& part : meshes_[m].parts) {
+            size[m] += (part.indices.empty() ? part.positions.size() : part.indices.size()) / 3;
+        }
+    }
+    for (const Placement& placement : placements_) {
+        ++placed[size_t(placement.mesh)];
+    }
+    std::vector<char> is_taken(meshes_.size(), 0);
+    for (Placement& placement : placements_) {
+        const size_t m = size_t(placement.mesh);
+        if (size[m] * placed[m] > triangles) {
+            continue;
+        }
+        if (is_taken[m]) {
+            placement.mesh = int(meshes_.size());
+            meshes_.push_back(Mesh(meshes_[m]));
+        }
+        is_taken[m] = 1;
+    }
+}
+
 void SceneBuilder::add_light(const PunctualLight& light) { lights_.push_back(light); }
 
 void SceneBuilder::set_camera(const CameraInput& camera) { camera_ = camera; }

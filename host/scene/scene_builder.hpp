@@ -97,6 +97,10 @@ public:
     // instanced. Throws SceneError if the transform is not finite.
     void place(int mesh, const Transform& to_world = {}, const std::string& name = "");
 
+    // Gives every placement its own copy of meshes whose copies hold no more than `triangles` in all:
+    // the second level of a tree and an instance's transforms cost more than so few triangles save.
+    void copy_small_meshes(size_t triangles);
+
     void add_light(const PunctualLight& light);
     void set_camera(const CameraInput& camera);
     // Latitude-longitude radiance map; u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi, row 0 = +Y.

@@ -12,6 +12,7 @@ namespace {
 SceneData load(const GltfText& gltf, LoadOptions options = {})
 {
     options.environment = "none";
+    options.copied_triangles = 0;
     return load_scene(gltf.write(), options);
 }
 
@@ -242,6 +243,25 @@ TEST(Gltf, A_mesh_of_two_nodes_is_stored_once)
     EXPECT_FALSE(scene.instances[1].is_mirrored);
     EXPECT_TRUE(scene.instances[2].is_mirrored);
     EXPECT_TRUE(scene.effects & EFFECT_INSTANCES);
+}
+
+TEST(Gltf, A_small_mesh_is_copied_instead)
+{
+    GltfText gltf;
+    gltf.add_triangle();
+    gltf.document["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}, {"scale", {-1, 1, 1}}}};
+    gltf.document["scenes"][0]["nodes"] = {0, 1};
+    LoadOptions options;
+    options.environment = "none";
+    options.copied_triangles = 1;
+    EXPECT_EQ(load_scene(gltf.write(), options).instances.size(), 3u);
+    options.copied_triangles = 2;
+    const SceneData scene = load_scene(gltf.write(), options);
+    EXPECT_EQ(scene.instances.size(), 1u);
+    EXPECT_FALSE(scene.effects & EFFECT_INSTANCES);
+    ASSERT_EQ(scene.triangles.size(), 2u);
+    EXPECT_EQ(scene.triangle_objects[0], 0);
+    EXPECT_EQ(scene.triangle_objects[1], 1);
 }
 
 TEST(Gltf, Gpu_instancing_places_its_mesh_for_every_element)
