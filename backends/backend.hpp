@@ -65,9 +65,11 @@ struct BackendOptions {
     int threads = 0;     // 0: as many as the machine has
     size_t memory_bytes = 512u << 20;
     double launch_milliseconds = 200;
-    bool fast_math = false;      // opencl: allow contraction and native functions
-    bool debug_kernels = false;  // twin: the library built for a debugger
-    std::string plant_fault;     // tests: name of a planted fault, see kernels_cl/faults.h
+    bool fast_math = false;       // opencl: allow contraction and native functions
+    bool debug_kernels = false;   // twin: the library built for a debugger
+    bool debug_textures = false;  // compile procedural textures for a debugger
+    std::string generated_dir;    // also write the generated code of textures there
+    std::string plant_fault;      // tests: name of a planted fault, see kernels_cl/faults.h
 };
 
 class Backend {

@@ -1,6 +1,7 @@
 #include "backends/cpu_backend.hpp"
 
 #include "backends/bvh_build.hpp"
+#include "backends/textures/native_stage.hpp"
 #include "kernels_cpu/chunk.hpp"
 #include "kernels_cpu/parallel_for.hpp"
 #include "kernels_cpu/stage_tracer.hpp"
@@ -68,6 +69,7 @@ private:
     void bind(const SceneData& scene);
     void add_neutral(const SceneData& scene);
     void build_embree(const SceneData& scene);
+    void build_textures(const SceneData& scene);
     PathView view_results(const Dispatch& dispatch);
     std::unique_ptr<Chunk> borrow_chunk();
     void return_chunk(std::unique_ptr<Chunk> chunk);
@@ -85,6 +87,7 @@ private:
     std::vector<uint> neutral_tangents_;
     std::vector<float4> neutral_colors_;
     std::unique_ptr<EmbreeScene> embree_;
+    std::unique_ptr<NativeStage> textures_;
 
     std::vector<unsigned char> result_memory_;
     std::vector<void*> result_planes_;
@@ -118,6 +121,7 @@ void CpuBackend::upload(SceneData& scene)
     bind(scene);
     add_neutral(scene);
     if (uses_embree_) build_embree(scene);
+    build_textures(scene);
     setup_seconds_ =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -180,6 +184,20 @@ void CpuBackend::build_embree(const SceneData& scene)
     embree_.reset();
     embree_ = std::make_unique<EmbreeScene>(meshes.data(), int(meshes.size()), threads_,
                                             (scene.effects & EFFECT_ALPHA) != 0);
+}
+
+void CpuBackend::build_textures(const SceneData& scene)
+{
+    scene_view_.textures = nullptr;
+    if ((scene.effects & EFFECT_PROCEDURAL) == 0) return;
+    NativeStageOptions options;
+    options.kind = kernels_.real_bytes == 8 ? NativeStageKind::reference
+                   : uses_embree_           ? NativeStageKind::vector
+                                            : NativeStageKind::scalar;
+    options.is_debug = options_.debug_textures;
+    options.generated_dir = options_.generated_dir;
+    textures_ = std::make_unique<NativeStage>(scene, options);
+    scene_view_.textures = &textures_->kernels();
 }
 
 PathView CpuBackend::view_results(const Dispatch& dispatch)

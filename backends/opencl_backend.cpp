@@ -55,7 +55,7 @@ private:
         opencl::Event event;
     };
 
-    void build_kernels(unsigned effects);
+    void build_kernels(const SceneData& scene);
     void bind_buffers(StageKernel& stage);
     void begin(const Dispatch& dispatch);
     void run(Stage stage, int count, bool is_compacted);
@@ -94,6 +94,7 @@ const int first_header = [] {
     SCENE_BUFFERS(COUNT_ROW)
     PATH_BUFFERS(COUNT_ROW)
     RESULT_BUFFERS(COUNT_ROW)
+    TEXTURE_BUFFERS(COUNT_ROW)
 #undef COUNT_ROW
     return rows;
 }();
@@ -130,18 +131,18 @@ void OpenclBackend::upload(SceneData& scene)
     memory_ = {};
     if (scene.bvh_nodes.empty()) build_bvh(scene);
     scene_ = upload_scene(context_, queue_, device_, scene);
-    build_kernels(scene.effects);
-    memory_ = DispatchMemory(context_, plan(scene).items, device_.group_size);
+    build_kernels(scene);
+    memory_ = DispatchMemory(context_, scene, plan(scene).items, device_.group_size);
     for (int k = 0; k < STAGE_COUNT; ++k)
         if (programs_.programs[k] && k != STAGE_compact) bind_buffers(kernels_[k]);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     statistics_.setup_seconds = elapsed.count();
 }
 
-void OpenclBackend::build_kernels(unsigned effects)
+void OpenclBackend::build_kernels(const SceneData& scene)
 {
-    effects_ = effects;
-    programs_ = build_programs(context_, device_, options_, effects, cache_);
+    effects_ = scene.effects;
+    programs_ = build_programs(context_, device_, options_, scene, cache_);
     for (int k = 0; k < STAGE_COUNT; ++k) {
         const std::optional<opencl::Program>& program = programs_.programs[k];
         if (program && k != STAGE_compact)
@@ -157,7 +158,8 @@ void OpenclBackend::build_kernels(unsigned effects)
 void OpenclBackend::bind_buffers(StageKernel& stage)
 {
     int index = 0;
-    for (const auto* buffers : {&scene_, &memory_.path_planes, &memory_.result_planes})
+    for (const auto* buffers :
+         {&scene_, &memory_.path_planes, &memory_.result_planes, &memory_.texture_planes})
         for (const opencl::Buffer& buffer : *buffers) stage.kernel.set(index++, buffer);
     stage.kernel.set(argument(ITEMS), memory_.items);
     stage.kernel.set(argument(LIVE), memory_.live[0]);

@@ -20,11 +20,19 @@ size_t plane_bytes(const std::vector<PlaneRow>& rows)
     return bytes;
 }
 
-size_t item_bytes()
+// How many planes each row of TEXTURE_BUFFERS has.
+std::vector<PlaneRow> texture_rows(const SceneData& scene)
+{
+    return {{"occlusion_result", scene.textures.occlusion_results, true},
+            {"texture_result", 4 * scene.textures.outputs, true}};
+}
+
+size_t item_bytes(const SceneData& scene)
 {
     const size_t lists = 3 * sizeof(int);  // live, twice, and at most one sum a path
-    return paths_per_item * (plane_bytes(path_rows()) + lists) +
-           results_per_item * plane_bytes(result_rows()) + sizeof(WorkItem);
+    const size_t planes = plane_bytes(path_rows()) + plane_bytes(texture_rows(scene));
+    return paths_per_item * (planes + lists) + results_per_item * plane_bytes(result_rows()) +
+           sizeof(WorkItem);
 }
 
 size_t scene_bytes(const SceneData& scene)
@@ -97,10 +105,12 @@ std::vector<opencl::Buffer> upload_scene(const opencl::Context& context, opencl:
     return buffers;
 }
 
-DispatchMemory::DispatchMemory(const opencl::Context& context, int item_count, int group_size)
+DispatchMemory::DispatchMemory(const opencl::Context& context, const SceneData& scene,
+                               int item_count, int group_size)
     : paths(item_count * paths_per_item), results(item_count * results_per_item),
       path_planes(planes(context, path_rows(), paths)),
       result_planes(planes(context, result_rows(), results)),
+      texture_planes(planes(context, texture_rows(scene), paths)),
       items(context.buffer(sizeof(WorkItem) * size_t(item_count), "items"))
 {
     for (opencl::Buffer& list : live) list = context.buffer(sizeof(int) * size_t(paths), "live");
@@ -116,17 +126,17 @@ Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory
     plan.structure_bytes = structure_bytes(scene);
     const size_t taken = plan.scene_bytes + plan.structure_bytes;
     const size_t budget = std::min(memory_bytes, device.memory_bytes);
-    if (budget < taken + item_bytes())
+    if (budget < taken + item_bytes(scene))
         throw std::runtime_error(
             "opencl: " + device.name + ": " + megabytes(budget) + " do not hold the scene (" +
-            megabytes(taken) + ") and one block of paths (" + megabytes(item_bytes()) + "); " +
+            megabytes(taken) + ") and one block of paths (" + megabytes(item_bytes(scene)) + "); " +
             (budget < memory_bytes ? "choose a device with more memory" : "raise --memory"));
     const size_t widest = 3 * sizeof(float) * paths_per_item;  // the buffer of a float3 row
     const int most = device.is_cpu ? most_items_of_cpu : most_items;
     const size_t items = std::min(
-        {(budget - taken) / item_bytes(), device.largest_allocation / widest, size_t(most)});
+        {(budget - taken) / item_bytes(scene), device.largest_allocation / widest, size_t(most)});
     plan.items = int(std::max<size_t>(items, 1));
-    plan.path_bytes = size_t(plan.items) * item_bytes();
+    plan.path_bytes = size_t(plan.items) * item_bytes(scene);
     return plan;
 }
 

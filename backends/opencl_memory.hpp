@@ -24,12 +24,14 @@ std::vector<opencl::Buffer> upload_scene(const opencl::Context& context, opencl:
 // Everything that a dispatch of `items` work items needs.
 struct DispatchMemory {
     DispatchMemory() = default;
-    DispatchMemory(const opencl::Context& context, int items, int group_size);
+    DispatchMemory(const opencl::Context& context, const SceneData& scene, int items,
+                   int group_size);
 
     int paths = 0;  // what it has room for
     int results = 0;
     std::vector<opencl::Buffer> path_planes;
     std::vector<opencl::Buffer> result_planes;
+    std::vector<opencl::Buffer> texture_planes;
     opencl::Buffer items;
     opencl::Buffer live[2];  // lists of live paths: this bounce's and the next one's
     opencl::Buffer sums;     // one of each work-group of the compaction

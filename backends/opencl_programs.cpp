@@ -2,6 +2,8 @@
 
 #include "backends/kernel_sources.hpp"
 #include "backends/sha256.hpp"
+#include "backends/textures/native_stage.hpp"
+#include "backends/textures/texture_source.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -20,9 +22,10 @@ std::string fault_option(const std::string& fault)
     return " -D FAULT=FAULT_" + (fault.empty() ? "none" : fault);
 }
 
-std::string source_for(Stage stage, const BackendOptions& options)
+std::string source_for(Stage stage, const BackendOptions& options, const SceneData& scene)
 {
     std::string source = kernel_source(stage);
+    if (stage == STAGE_evaluate_textures) source = opencl_texture_program(scene, source);
     const std::string exact = "FP_CONTRACT OFF";
     const size_t at = source.find(exact);
     if (options.fast_math && at != std::string::npos)
@@ -79,8 +82,10 @@ std::string program_options(const DeviceInfo& device, const BackendOptions& opti
 }
 
 ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& device,
-                          const BackendOptions& options, unsigned effects, ProgramCache& cache)
+                          const BackendOptions& options, const SceneData& scene,
+                          ProgramCache& cache)
 {
+    const unsigned effects = scene.effects;
     const std::string flags = program_options(device, options, effects);
     // one after the other, for drivers whose compiler does not stand threads (Oclgrind)
     const auto how = options.threads == 1 ? std::launch::deferred : std::launch::async;
@@ -89,8 +94,8 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
         const Stage stage = Stage(k);
         if (!is_active(stage, effects)) continue;
         jobs[k] = std::async(how, [&, stage] {
-            return build(context, device, source_for(stage, options), flags, stage_names[stage],
-                         cache);
+            return build(context, device, source_for(stage, options, scene), flags,
+                         stage_names[stage], cache);
         });
     }
     ProgramSet set;
@@ -101,6 +106,7 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
             ++set.from_cache;
         } else {
             ++set.compiled;
+            if (Stage(k) == STAGE_evaluate_textures) count_texture_compilation();
             cache.store(built.key, built.new_binary);
         }
         set.programs[k] = std::move(built.program);

@@ -21,8 +21,10 @@ struct ProgramSet {
     int compiled = 0;
 };
 
-// The programs of all stages that are active for `effects`. Throws with the compiler's log.
+// The programs of all stages that are active for the scene's effects. Throws with the compiler's
+// log.
 ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& device,
-                          const BackendOptions& options, unsigned effects, ProgramCache& cache);
+                          const BackendOptions& options, const SceneData& scene,
+                          ProgramCache& cache);
 
 }  // namespace diptych

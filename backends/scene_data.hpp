@@ -4,6 +4,7 @@
 
 #include "platform.h"
 
+#include "backends/textures/texture_function.hpp"
 #include "common/buffers.h"
 #include "common/effects.h"
 
@@ -17,6 +18,7 @@ struct SceneData {
     SCENE_BUFFERS(SCENE_VECTOR)
 #undef SCENE_VECTOR
     unsigned effects = 0;  // mask of EFFECT_*
+    SceneTextures textures;
 
     // For people: not uploaded.
     std::vector<std::string> material_names;

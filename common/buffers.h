@@ -76,9 +76,17 @@
     X(int, material_id)     \
     X(int, fault)
 
+// Planes whose number the scene decides, none in most: what textures asked for and what they gave.
+//   occlusion_result: of each request, the open fraction of its rays
+//   texture_result:   four of each SLOT_* that some material of the scene computes
+#define TEXTURE_BUFFERS(X)     \
+    X(float, occlusion_result) \
+    X(float, texture_result)
+
 #define SCENE_FIELD(type, name) GLOBAL const STORED(type) * name;
 #define PATH_FIELD(type, name, life) GLOBAL PLANE(type) * name;
 #define RESULT_FIELD(type, name) GLOBAL PLANE(type) * name;
+#define TEXTURE_FIELD(type, name) GLOBAL PLANE(type) * name;
 
 // The scene as a kernel sees it.
 typedef struct {
@@ -100,6 +108,7 @@ typedef struct {
     GLOBAL const STORED(WorkItem) * items;
     PATH_BUFFERS(PATH_FIELD)
     RESULT_BUFFERS(RESULT_FIELD)
+    TEXTURE_BUFFERS(TEXTURE_FIELD)
 } Paths;
 
 // get_NAME(paths, i) and set_NAME(paths, i, value) for every row.
@@ -125,3 +134,22 @@ typedef struct {
 #define RESULT_ACCESS(type, name) ACCESS_##type(name, results)
 PATH_BUFFERS(PATH_ACCESS)
 RESULT_BUFFERS(RESULT_ACCESS)
+
+// Planes of TEXTURE_BUFFERS are numbered.
+#define TEXTURE_ACCESS(type, name)                                       \
+    SHARED type get_##name(const Paths* paths, int plane, int i)         \
+    {                                                                    \
+        return paths->name[plane * paths->capacity + i];                 \
+    }                                                                    \
+    SHARED void set_##name(const Paths* paths, int plane, int i, type x) \
+    {                                                                    \
+        paths->name[plane * paths->capacity + i] = x;                    \
+    }
+TEXTURE_BUFFERS(TEXTURE_ACCESS)
+
+// Behind the materials, in the same buffer, lie the programs and arguments of their textures
+// (common/textures/procedural.h): word `word` of it.
+SHARED uint material_word(const Scene* scene, int word)
+{
+    return ((GLOBAL const uint*)scene->materials)[word];
+}

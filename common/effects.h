@@ -18,7 +18,9 @@
     X(ALPHA, 11, "alpha masks and blending")                                 \
     X(UNLIT, 12, "unlit materials")                                          \
     X(FLOAT_TEXTURES, 13, "textures of 16 bit or float")                     \
-    X(ORTHOGRAPHIC, 14, "an orthographic camera")
+    X(ORTHOGRAPHIC, 14, "an orthographic camera")                            \
+    X(PROCEDURAL, 15, "procedural textures")                                 \
+    X(TEXTURE_OCCLUSION, 16, "occlusion that textures ask for")
 
 #define EFFECT_BIT(name, bit, words) EFFECT_##name = 1 << bit,
 enum { EFFECTS_LIST(EFFECT_BIT) };

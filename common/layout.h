@@ -44,7 +44,12 @@ typedef struct {
     float environment_probability;  // of choosing the environment as the light
     float scene_radius;             // of the bounding sphere
     float4 scene_centre;
-    float4 reserved[3];
+    int texture_output[6];  // of each SLOT_*: its place among the texture stage's results, or -1
+    int texture_uv_set[2];  // which uv sets are TexCoord0 and TexCoord1; -1: none
+    int occlusion_rays;     // of each request that a texture makes, a path
+    float time;             // seconds, for textures that ask
+    int samples;            // a pixel's
+    int reserved;
 } Settings;
 
 #define CAMERA_PERSPECTIVE 0
@@ -98,9 +103,22 @@ typedef struct {
     int emission_slot;
     int specular_slot;
     int specular_color_slot;
-    int reserved[3];
+    int texture_program;  // where in the words of the materials its TextureProgram lies; 0: none
+    int reserved[2];
     float4 reserved_effects;
 } Material;
+
+// In place of a texture slot: the texture stage has computed what the material reads there.
+#define TEXTURE_PROCEDURAL (-2)
+
+// The places of a material where a texture may stand.
+#define SLOT_BASE 0
+#define SLOT_METALLIC_ROUGHNESS 1
+#define SLOT_NORMAL 2
+#define SLOT_EMISSION 3
+#define SLOT_SPECULAR 4
+#define SLOT_SPECULAR_COLOR 5
+#define SLOT_COUNT 6
 
 #define ALPHA_OPAQUE 0
 #define ALPHA_MASK 1

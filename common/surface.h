@@ -152,20 +152,29 @@ SHARED float4 surface_vertex_color(const Scene* scene, int triangle, float2 weig
         interpolate(scene->colors[a].w, scene->colors[b].w, scene->colors[c].w, weights));
 }
 
-// Base colour and alpha: factor, texture and vertex colour multiplied (glTF 2.0, 3.9.2).
-SHARED float4 surface_base_color(const Scene* scene, int triangle, float2 weights)
+// Base colour and alpha: factor, texture and vertex colour multiplied (glTF 2.0, 3.9.2); `texel` is
+// what the texture gives.
+SHARED float4 surface_colored(const Scene* scene, int triangle, float2 weights, float4 texel)
 {
     const int material = scene->triangles[triangle].material;
-    float4 color = make_float4(
+    const float4 factor = make_float4(
         scene->materials[material].base_color.x, scene->materials[material].base_color.y,
         scene->materials[material].base_color.z, scene->materials[material].base_color.w);
-    if (uses(scene, EFFECT_BASE_TEXTURE)) {
-        const int slot = scene->materials[material].base_slot;
-        color = color * surface_texture(scene, triangle, weights, slot);
-    }
+    float4 color = factor * texel;
     if (uses(scene, EFFECT_VERTEX_COLOR))
         color = color * surface_vertex_color(scene, triangle, weights);
     return color;
+}
+
+SHARED float4 surface_base_color(const Scene* scene, int triangle, float2 weights)
+{
+    float4 texel = make_float4(1.0f, 1.0f, 1.0f, 1.0f);
+    if (uses(scene, EFFECT_BASE_TEXTURE)) {
+        const int material = scene->triangles[triangle].material;
+        const int slot = scene->materials[material].base_slot;
+        texel = surface_texture(scene, triangle, weights, slot);
+    }
+    return surface_colored(scene, triangle, weights, texel);
 }
 
 SHARED float3 vertex_normal(const Scene* scene, int vertex, float3 otherwise)
@@ -209,13 +218,12 @@ SHARED float3 surface_tangent(const Scene* scene, int instance, int triangle, fl
     return uses(scene, EFFECT_INSTANCES) ? vector_to_world(scene, instance, t) : t;
 }
 
-// The normal with the material's normal map applied; n of unit length, outside.
+// The normal with a normal map's texel applied; n of unit length, outside.
 SHARED float3 surface_mapped_normal(const Scene* scene, int instance, int triangle, float2 weights,
-                                    float3 n)
+                                    float3 n, float4 texel)
 {
     const int material = scene->triangles[triangle].material;
     const int slot = scene->materials[material].normal_slot;
-    const float4 texel = surface_texture(scene, triangle, weights, slot);
     const float scale = scene->materials[material].normal_scale;
     const float x = (2.0f * texel.x - 1.0f) * scale;
     const float y = (2.0f * texel.y - 1.0f) * scale;
@@ -233,7 +241,7 @@ SHARED float3 surface_mapped_normal(const Scene* scene, int instance, int triang
 
     const float3 mapped = tangent * x + bitangent * y + n * z;
     const float length2 = vec_dot(mapped, mapped);
-    const int is_usable = (slot >= 0) & (length2 > 1e-12f) & (t_length2 > 0.0f);
+    const int is_usable = (slot != -1) & (length2 > 1e-12f) & (t_length2 > 0.0f);
     const float inverse = is_usable ? 1.0f / math_sqrt(length2) : 0.0f;
     return make_float3(is_usable ? mapped.x * inverse : n.x, is_usable ? mapped.y * inverse : n.y,
                        is_usable ? mapped.z * inverse : n.z);

@@ -8,6 +8,7 @@
 #define SCENE_ARGUMENT(type, name) GLOBAL const STORED(type) * name,
 #define PATH_ARGUMENT(type, name, life) GLOBAL PLANE(type) * name,
 #define RESULT_ARGUMENT(type, name) GLOBAL PLANE(type) * name,
+#define TEXTURE_ARGUMENT(type, name) GLOBAL PLANE(type) * name,
 
 // is_compacted: the paths are live[first] to live[first + count - 1], else first to
 // first + count - 1.
@@ -15,12 +16,14 @@
     SCENE_BUFFERS(SCENE_ARGUMENT)                                                                 \
     PATH_BUFFERS(PATH_ARGUMENT)                                                                   \
     RESULT_BUFFERS(RESULT_ARGUMENT)                                                               \
+    TEXTURE_BUFFERS(TEXTURE_ARGUMENT)                                                             \
     GLOBAL const WorkItem *items, GLOBAL const int *live, int capacity, int results, int samples, \
         int pixel_shift, int first, int count, int is_compacted
 
 #define BIND_SCENE(type, name) scene.name = name;
 #define BIND_PATH(type, name, life) paths.name = name;
 #define BIND_RESULT(type, name) paths.name = name;
+#define BIND_TEXTURE(type, name) paths.name = name;
 
 // Declares the views `scene` and `paths` over the arguments.
 #define KERNEL_VIEWS                 \
@@ -35,4 +38,5 @@
     paths.turn = 0;                  \
     paths.items = items;             \
     PATH_BUFFERS(BIND_PATH)          \
-    RESULT_BUFFERS(BIND_RESULT)
+    RESULT_BUFFERS(BIND_RESULT)      \
+    TEXTURE_BUFFERS(BIND_TEXTURE)

@@ -4,6 +4,7 @@ file(READ ${TEXT} source)
 string(REGEX REPLACE "\n# ([0-9]+) (\"[^\"\n]*\")[^\n]*" "\n#line \\1 \\2" source "\n${source}")
 string(REPLACE "\"${ROOT}/" "\"" source "${source}")
 string(REGEX REPLACE "\n#line (0 |[0-9]+ \"<)[^\n]*" "" source "${source}")
+string(REGEX REPLACE "\n#define (__STDC|STAGE|WHEN)[^\n]*" "" source "${source}")
 string(REGEX REPLACE "^\n" "" source "${source}")
 file(WRITE ${TEXT} "${source}")
 

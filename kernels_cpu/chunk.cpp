@@ -42,7 +42,12 @@ Chunk::Chunk(const KernelSet& kernels, const EmbreeScene* embree, const SceneVie
     const auto row_bytes = [&](const PathRow& row) {
         return size_t(row.components) * capacity * (row.is_real ? kernels.real_bytes : 4);
     };
+    const auto texture_bytes = [&](int row) {
+        return scene.textures ? size_t(scene.textures->planes[row]) * capacity * kernels.real_bytes
+                              : 0;
+    };
     for (const PathRow& row : path_rows) bytes += row_bytes(row);
+    for (int r = 0; r < texture_rows; ++r) bytes += texture_bytes(r);
     bytes += row_bytes(path_rows[row_radiance]);
     memory_.resize(bytes);
     auto* next = memory_.data() + (64 - reinterpret_cast<std::uintptr_t>(memory_.data()) % 64);
@@ -52,8 +57,14 @@ Chunk::Chunk(const KernelSet& kernels, const EmbreeScene* embree, const SceneVie
     }
     retired_planes_ = planes_;
     retired_planes_[row_radiance] = next;
+    next += row_bytes(path_rows[row_radiance]);
+    for (int r = 0; r < texture_rows; ++r) {
+        texture_planes_.push_back(next);
+        next += texture_bytes(r);
+    }
     view_.capacity = capacity;
     view_.planes = planes_.data();
+    view_.texture_planes = texture_planes_.data();
 }
 
 void Chunk::run(const PathView& results, int first_result, const void* item)
@@ -105,6 +116,8 @@ void Chunk::run_stage(Stage stage, int count)
         rays += embree_->intersect(scene_, view_, count, bounce_ == 0);
     else if (stage == STAGE_occlusion)
         shadow_rays += embree_->occlusion(scene_, view_, count);
+    else if (stage == STAGE_evaluate_textures)
+        scene_.textures->evaluate(scene_, view_, 0, count);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     stage_seconds[stage] += elapsed.count();
 }

@@ -40,6 +40,7 @@ private:
     std::vector<unsigned char> memory_;
     std::vector<void*> planes_;
     std::vector<void*> retired_planes_;  // planes_, but radiance lies in the order of the slots
+    std::vector<void*> texture_planes_;
     std::vector<int> slots_;
     std::vector<int> live_;
     PathView view_;

@@ -11,6 +11,7 @@ namespace diptych {
 struct SceneView {
     unsigned effects = 0;
     const void* const* buffers = nullptr;
+    const struct TextureKernels* textures = nullptr;  // where the scene calls for procedural ones
 };
 struct PathView {
     int capacity = 0;
@@ -21,10 +22,18 @@ struct PathView {
     const void* items = nullptr;  // WorkItem
     void* const* planes = nullptr;
     void* const* result_planes = nullptr;
+    void* const* texture_planes = nullptr;  // one of each row of TEXTURE_BUFFERS
 };
 
 // Runs a stage for paths (or results) first .. first + count - 1.
 using StageLoop = void (*)(const SceneView&, const PathView&, int first, int count);
+
+// The stage that holds user code: compiled while the program runs (backends/textures), for one
+// scene and one kernel set.
+struct TextureKernels {
+    StageLoop evaluate = nullptr;
+    int planes[2] = {};  // of each row of TEXTURE_BUFFERS
+};
 
 struct KernelSet {
     const char* name;

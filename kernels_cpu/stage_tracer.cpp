@@ -27,6 +27,12 @@ StageTracer::StageTracer(const KernelSet& kernels, const EmbreeScene* embree,
         memory_.emplace_back(padded * element * size_t(row.components) + 64);
         planes_.push_back(memory_.back().data());
     }
+    for (int r = 0; r < texture_rows; ++r) {
+        const size_t planes = scene.textures ? size_t(scene.textures->planes[r]) : 0;
+        memory_.emplace_back(padded * size_t(kernels.real_bytes) * planes + 64);
+        texture_planes_.push_back(memory_.back().data());
+    }
+    view_.texture_planes = texture_planes_.data();
     view_.capacity = int(padded);
     view_.planes = planes_.data();
 }
@@ -51,6 +57,8 @@ void StageTracer::run_stage(Stage stage, int bounce)
         embree_->intersect(scene_, view_, paths_, bounce == 0);
     else if (stage == STAGE_occlusion)
         embree_->occlusion(scene_, view_, paths_);
+    else if (stage == STAGE_evaluate_textures)
+        scene_.textures->evaluate(scene_, view_, 0, paths_);
 }
 
 StageTracer::Planes StageTracer::planes() const

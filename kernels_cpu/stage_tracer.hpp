@@ -33,6 +33,7 @@ private:
     int paths_;
     std::vector<std::vector<unsigned char>> memory_;
     std::vector<void*> planes_;
+    std::vector<void*> texture_planes_;
 };
 
 }  // namespace diptych

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 
 // Each set has the shared sources in a namespace of its own, so that their types never meet.
 namespace diptych::KERNEL_SET {
@@ -16,6 +17,7 @@ namespace diptych::KERNEL_SET {
 #if !VECTORISED
 #include "common/stages/intersect.h"
 #include "common/stages/occlusion.h"
+#include "common/stages/trace_texture_rays.h"
 #endif
 
 namespace {
@@ -47,6 +49,10 @@ Paths paths_from(const PathView& view)
 #define BIND_RESULT(type, name) \
     paths.name = static_cast<decltype(paths.name)>(view.result_planes[row++]);
     RESULT_BUFFERS(BIND_RESULT)
+    row = 0;
+#define BIND_TEXTURE(type, name) \
+    paths.name = static_cast<decltype(paths.name)>(view.texture_planes[row++]);
+    TEXTURE_BUFFERS(BIND_TEXTURE)
     return paths;
 }
 
@@ -61,6 +67,10 @@ constexpr unsigned variants[] = {
         EFFECT_BASE_TEXTURE,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
         EFFECT_BASE_TEXTURE | EFFECT_SURFACE_TEXTURES | EFFECT_NORMAL_MAP,
+    ~unsigned(EFFECT_PROCEDURAL),
+    EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_PROCEDURAL,
+    EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
+        EFFECT_PROCEDURAL,
     ~0u,
 };
 [[maybe_unused]] constexpr int variant_count = int(sizeof(variants) / sizeof(variants[0]));
@@ -71,6 +81,7 @@ constexpr unsigned variants[] = {
 int variant_for(unsigned effects)
 {
     int k = 0;
+    effects &= ~unsigned(EFFECT_TEXTURE_OCCLUSION);  // which none of these loops asks
     while ((effects & ~variants[k]) != 0) ++k;
     return k;
 }
@@ -107,7 +118,7 @@ STAGES(ENTRY)
         const Paths paths = paths_from(path_view);                                                 \
         for (int i = first; i < first + count; ++i) name(&scene, &paths, i);                       \
     }
-ENTRY_walk(intersect) ENTRY_walk(occlusion)
+ENTRY_walk(intersect) ENTRY_walk(occlusion) ENTRY_walk(trace_texture_rays)
 #endif
 
     StageLoop loop_of(Stage stage, unsigned effects)
@@ -116,7 +127,9 @@ ENTRY_walk(intersect) ENTRY_walk(occlusion)
 #if VECTORISED
 #define LOOPS_OF(name)                                                                            \
     static constexpr StageLoop name##_loops[] = {name##_loop<0>, name##_loop<1>, name##_loop<2>,  \
-                                                 name##_loop<3>, name##_loop<4>, name##_loop<5>}; \
+                                                 name##_loop<3>, name##_loop<4>, name##_loop<5>,  \
+                                                 name##_loop<6>, name##_loop<7>, name##_loop<8>}; \
+    static_assert(std::size(name##_loops) == variant_count);                                      \
     if (stage == STAGE_##name) return name##_loops[variant];
 #else
 #define LOOPS_OF(name) \
@@ -129,6 +142,7 @@ ENTRY_walk(intersect) ENTRY_walk(occlusion)
 #if !VECTORISED
     if (stage == STAGE_intersect) return intersect_loop;
     if (stage == STAGE_occlusion) return occlusion_loop;
+    if (stage == STAGE_trace_texture_rays) return trace_texture_rays_loop;
 #endif
     (void)variant;
     return nullptr;

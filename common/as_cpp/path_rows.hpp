@@ -26,6 +26,10 @@ inline constexpr PathRow path_rows[] = {
 };
 inline constexpr int path_row_count = int(std::size(path_rows));
 
+#define COUNT_TEXTURE_ROW(type, name) +1
+inline constexpr int texture_rows = 0 TEXTURE_BUFFERS(COUNT_TEXTURE_ROW);
+#undef COUNT_TEXTURE_ROW
+
 enum PathRowName {
 #define PATH_ROW_NAME(type, name, life) row_##name,
     PATH_BUFFERS(PATH_ROW_NAME)

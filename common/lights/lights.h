@@ -10,7 +10,8 @@ SHARED int light_choose(const Scene* scene, float2 u)
 {
     const int count = scene->settings[0].light_count;
     const int scaled = (int)(u.x * (float)count);
-    const int drawn = scaled >= count ? count - 1 : scaled;
+    const int last = count - 1 + (count == 0);  // nothing lies at 0 where there are no lights
+    const int drawn = scaled > last ? last : scaled;
     const int alias = scene->light_choice[drawn].alias;
     const float threshold = scene->light_choice[drawn].threshold;
     const int mask = u.y < threshold ? 0 : -1;  // bits, not a select, which would select addresses

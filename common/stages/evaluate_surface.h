@@ -26,41 +26,69 @@ SHARED float3 surface_dielectric_f0(const Scene* scene, int material, float4 spe
                        math_lesser(f0 * specular_color.z, 1.0f) * weight);
 }
 
+// What a slot of the material reads where path i met it: of an image (if `reads_images`, a
+// constant), of the texture stage, or white. `which`: SLOT_*.
+SHARED float4 surface_slot(const Scene* scene, const Paths* paths, int i, float2 weights, int slot,
+                           int which, int reads_images)
+{
+    const int hit = get_hit_triangle(paths, i);
+    float4 texel = make_float4(1.0f, 1.0f, 1.0f, 1.0f);
+    if (reads_images) texel = surface_texture(scene, hit < 0 ? 0 : hit, weights, slot);
+    if (uses(scene, EFFECT_PROCEDURAL)) {
+        const int output = scene->settings[0].texture_output[which];
+        const int plane = output < 0 ? 0 : 4 * output;
+        const float r = get_texture_result(paths, plane, i);
+        const float g = get_texture_result(paths, plane + 1, i);
+        const float b = get_texture_result(paths, plane + 2, i);
+        const float a = get_texture_result(paths, plane + 3, i);
+        const int is_procedural = slot == TEXTURE_PROCEDURAL;
+        texel = make_float4(is_procedural ? r : texel.x, is_procedural ? g : texel.y,
+                            is_procedural ? b : texel.z, is_procedural ? a : texel.w);
+    }
+    return texel;
+}
+
 // Specular colour factor times texture; w: specular factor times the alpha of its texture.
-SHARED float4 surface_specular(const Scene* scene, int triangle, int material, float2 weights)
+SHARED float4 surface_specular(const Scene* scene, const Paths* paths, int i, int material,
+                               float2 weights)
 {
     const float4 factor = make_float4(
         scene->materials[material].specular_color.x, scene->materials[material].specular_color.y,
         scene->materials[material].specular_color.z, scene->materials[material].specular_color.w);
-    if (!uses(scene, EFFECT_SURFACE_TEXTURES)) return factor;
-    const float4 strength =
-        surface_texture(scene, triangle, weights, scene->materials[material].specular_slot);
+    if (!uses(scene, EFFECT_SURFACE_TEXTURES | EFFECT_PROCEDURAL)) return factor;
+    const int reads = uses(scene, EFFECT_SURFACE_TEXTURES);
+    const float4 strength = surface_slot(
+        scene, paths, i, weights, scene->materials[material].specular_slot, SLOT_SPECULAR, reads);
     const float4 color =
-        surface_texture(scene, triangle, weights, scene->materials[material].specular_color_slot);
+        surface_slot(scene, paths, i, weights, scene->materials[material].specular_color_slot,
+                     SLOT_SPECULAR_COLOR, reads);
     return make_float4(factor.x * color.x, factor.y * color.y, factor.z * color.z,
                        factor.w * strength.w);
 }
 
 // x: metallic, y: roughness.
-SHARED float2 surface_metallic_roughness(const Scene* scene, int triangle, int material,
-                                         float2 weights)
+SHARED float2 surface_metallic_roughness(const Scene* scene, const Paths* paths, int i,
+                                         int material, float2 weights)
 {
     const float2 factor =
         make_float2(scene->materials[material].metallic, scene->materials[material].roughness);
-    if (!uses(scene, EFFECT_SURFACE_TEXTURES)) return factor;
-    const float4 texel = surface_texture(scene, triangle, weights,
-                                         scene->materials[material].metallic_roughness_slot);
+    if (!uses(scene, EFFECT_SURFACE_TEXTURES | EFFECT_PROCEDURAL)) return factor;
+    const float4 texel =
+        surface_slot(scene, paths, i, weights, scene->materials[material].metallic_roughness_slot,
+                     SLOT_METALLIC_ROUGHNESS, uses(scene, EFFECT_SURFACE_TEXTURES));
     return make_float2(factor.x * texel.z, factor.y * texel.y);
 }
 
-SHARED float3 surface_emission(const Scene* scene, int triangle, int material, float2 weights)
+SHARED float3 surface_emission(const Scene* scene, const Paths* paths, int i, int material,
+                               float2 weights)
 {
     const float3 factor =
         make_float3(scene->materials[material].emission.x, scene->materials[material].emission.y,
                     scene->materials[material].emission.z);
-    if (!uses(scene, EFFECT_EMISSION_TEXTURE)) return factor;
+    if (!uses(scene, EFFECT_EMISSION_TEXTURE | EFFECT_PROCEDURAL)) return factor;
     const float4 texel =
-        surface_texture(scene, triangle, weights, scene->materials[material].emission_slot);
+        surface_slot(scene, paths, i, weights, scene->materials[material].emission_slot,
+                     SLOT_EMISSION, uses(scene, EFFECT_EMISSION_TEXTURE));
     return factor * xyz(texel);
 }
 
@@ -94,14 +122,20 @@ SHARED void evaluate_surface(const Scene* scene, const Paths* paths, int i)
     float3 normal = outside;
     if (uses(scene, EFFECT_SMOOTH_NORMALS))
         normal = surface_smooth_normal(scene, instance, triangle, weights, outside);
-    if (uses(scene, EFFECT_NORMAL_MAP))
-        normal = surface_mapped_normal(scene, instance, triangle, weights, normal);
+    if (uses(scene, EFFECT_NORMAL_MAP)) {
+        const float4 texel = surface_slot(scene, paths, i, weights,
+                                          scene->materials[material].normal_slot, SLOT_NORMAL, 1);
+        normal = surface_mapped_normal(scene, instance, triangle, weights, normal, texel);
+    }
     normal = select3(is_front, normal, -normal);
     const float3 face_normal = select3(is_front, outside, -outside);
     if (uses(scene, EFFECT_SMOOTH_NORMALS | EFFECT_NORMAL_MAP))
         normal = normal_facing(normal, view);
 
-    const float3 base_color = xyz(surface_base_color(scene, triangle, weights));
+    const float4 base_texel =
+        surface_slot(scene, paths, i, weights, scene->materials[material].base_slot, SLOT_BASE,
+                     uses(scene, EFFECT_BASE_TEXTURE));
+    const float3 base_color = xyz(surface_colored(scene, triangle, weights, base_texel));
     set_position(paths, i, position);
     set_position_error(paths, i, surface_error(world.magnitude));
     set_face_normal(paths, i, face_normal);
@@ -115,15 +149,15 @@ SHARED void evaluate_surface(const Scene* scene, const Paths* paths, int i)
     set_surface_kind(paths, i, is_hit ? kind : SURFACE_NONE);
 
     if (uses(scene, EFFECT_SPECULAR)) {
-        const float2 factors = surface_metallic_roughness(scene, triangle, material, weights);
-        const float4 specular = surface_specular(scene, triangle, material, weights);
+        const float2 factors = surface_metallic_roughness(scene, paths, i, material, weights);
+        const float4 specular = surface_specular(scene, paths, i, material, weights);
         set_metallic(paths, i, factors.x);
         set_roughness(paths, i, factors.y);
         set_dielectric_f0(paths, i, surface_dielectric_f0(scene, material, specular));
         set_dielectric_f90(paths, i, specular.w);
     }
     if (uses(scene, EFFECT_EMISSION)) {
-        const float3 emission = surface_emission(scene, triangle, material, weights);
+        const float3 emission = surface_emission(scene, paths, i, material, weights);
         const float area_pdf = scene->materials[material].emission.w;
         const float3 none = make_float3(0.0f, 0.0f, 0.0f);
         set_emission(paths, i, select3(is_front & is_hit, emission, none));

@@ -13,16 +13,18 @@
 //         over result entries, not paths, once for each of Paths::samples with Paths::turn counting up
 //   needs: effects of which the scene must call for one, else the stage is neither compiled nor
 //         launched; 0: always
-#define STAGES(X)                                                      \
-    X(generate_paths, shared, once, 0)                                 \
-    X(intersect, native, each_bounce, 0)                               \
-    X(evaluate_surface, shared, each_bounce, 0)                        \
-    X(record_features, shared, first_bounce, 0)                        \
-    X(add_emission, shared, each_bounce, LIGHT_EFFECTS | EFFECT_UNLIT) \
-    X(sample_light, shared, each_bounce, LIGHT_EFFECTS)                \
-    X(occlusion, native, each_bounce, LIGHT_EFFECTS)                   \
-    X(sample_bsdf, shared, each_bounce, 0)                             \
-    X(compact, native, each_bounce, 0)                                 \
+#define STAGES(X)                                                        \
+    X(generate_paths, shared, once, 0)                                   \
+    X(intersect, native, each_bounce, 0)                                 \
+    X(trace_texture_rays, native, each_bounce, EFFECT_TEXTURE_OCCLUSION) \
+    X(evaluate_textures, native, each_bounce, EFFECT_PROCEDURAL)         \
+    X(evaluate_surface, shared, each_bounce, 0)                          \
+    X(record_features, shared, first_bounce, 0)                          \
+    X(add_emission, shared, each_bounce, LIGHT_EFFECTS | EFFECT_UNLIT)   \
+    X(sample_light, shared, each_bounce, LIGHT_EFFECTS)                  \
+    X(occlusion, native, each_bounce, LIGHT_EFFECTS)                     \
+    X(sample_bsdf, shared, each_bounce, 0)                               \
+    X(compact, native, each_bounce, 0)                                   \
     X(accumulate, shared, at_end, 0)
 
 #define STAGE_NUMBER(name, body, when, needs) STAGE_##name,

@@ -76,13 +76,12 @@ SHARED int wrap_texel(int k, int size, int wrap)
 }
 
 // The image of a slot at texture coordinates (u, v), v downwards as glTF has it; linear colour,
-// alpha straight. slot < 0 gives white.
-SHARED float4 texture_read(const Scene* scene, int slot, float2 uv)
+// alpha straight. slot < 0 gives white. wrap, filter: as in TextureSlot.
+SHARED float4 texture_read_with(const Scene* scene, int slot, float2 uv, int wrap, int filter)
 {
     const int s = slot < 0 ? 0 : slot;
     const int image = scene->texture_slots[s].image;
-    const int wrap = scene->texture_slots[s].wrap;
-    const int is_linear = scene->texture_slots[s].filter == TEXTURE_LINEAR;
+    const int is_linear = filter == TEXTURE_LINEAR;
     const float u = scene->texture_slots[s].to_u.x * uv.x + scene->texture_slots[s].to_u.y * uv.y +
                     scene->texture_slots[s].to_u.z;
     const float v = scene->texture_slots[s].to_v.x * uv.x + scene->texture_slots[s].to_v.y * uv.y +
@@ -116,4 +115,12 @@ SHARED float4 texture_read(const Scene* scene, int slot, float2 uv)
     const int is_bound = slot >= 0;
     return make_float4(is_bound ? value.x : 1.0f, is_bound ? value.y : 1.0f,
                        is_bound ? value.z : 1.0f, is_bound ? value.w : 1.0f);
+}
+
+// The same with the slot's own wrapping and filter.
+SHARED float4 texture_read(const Scene* scene, int slot, float2 uv)
+{
+    const int s = slot < 0 ? 0 : slot;
+    return texture_read_with(scene, slot, uv, scene->texture_slots[s].wrap,
+                             scene->texture_slots[s].filter);
 }

@@ -277,10 +277,11 @@ std::string reason_for(const SceneData& scene, unsigned effect)
 
 std::string explanation(const SceneData& scene, const SceneFlags& flags)
 {
-    std::string text = fmt::format(
-        "{}: {}, {}, {}, {}\n", flags.scene.empty() ? "the demo scene" : flags.scene,
-        counted(scene.triangles.size(), "triangle"), counted(scene.materials.size(), "material"),
-        counted(scene.images.size(), "image"), counted(scene.lights.size(), "light"));
+    std::string text =
+        fmt::format("{}: {}, {}, {}, {}\n", flags.scene.empty() ? "the demo scene" : flags.scene,
+                    counted(scene.triangles.size(), "triangle"),
+                    counted(scene.material_names.size(), "material"),
+                    counted(scene.images.size(), "image"), counted(scene.lights.size(), "light"));
     add_effects(text, scene);
     add_stages(text, scene);
     add_lights(text, scene);

@@ -1,6 +1,8 @@
 // Materials, the images they read, and the effects that all of it calls for.
 #include "host/scene/scene_assembly.hpp"
 
+#include "common/textures/procedural.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
@@ -75,6 +77,16 @@ void SceneAssembly::assemble_images()
         note(material.normal_texture, false);
         note(material.specular_texture, false);
     }
+    for (size_t k = 0; k < node_used_.size(); ++k) {
+        if (!node_used_[k]) {
+            continue;
+        }
+        for (const auto& [name, value] : builder_.texture_nodes_[k].arguments) {
+            for (const TextureUse& use : value.images) {
+                note(use, !value.is_linear);
+            }
+        }
+    }
     pictures_.resize(uses_of.size());
     size_t bad_texels = 0;
     for (size_t k = 0; k < uses_of.size(); ++k) {
@@ -146,6 +158,9 @@ int SceneAssembly::pack_picture(const Picture& picture, bool is_srgb, int shared
 
 int SceneAssembly::add_slot(const TextureUse& use, bool is_srgb)
 {
+    if (use.node >= 0) {
+        return TEXTURE_PROCEDURAL;
+    }
     if (use.image < 0) {
         return -1;
     }
@@ -158,6 +173,11 @@ int SceneAssembly::add_slot(const TextureUse& use, bool is_srgb)
     if (stored_set < 0) {
         stored_set = uv_set_count_++;
     }
+    return add_image_slot(use, is_srgb, stored_set);
+}
+
+int SceneAssembly::add_image_slot(const TextureUse& use, bool is_srgb, int stored_set)
+{
     const PictureFacts& facts = pictures_[size_t(use.image)];
     TextureSlot slot{};
     slot.image = is_srgb ? facts.image_srgb : facts.image_linear;
@@ -176,6 +196,12 @@ bool SceneAssembly::can_be_transparent(const MaterialInput& m) const
 {
     if (m.alpha_mode == ALPHA_OPAQUE) {
         return false;
+    }
+    if (m.base_texture.node >= 0) {
+        throw SceneError(fmt::format(
+            "material {}: its alpha would come from texture node {}, which cannot be asked on a "
+            "ray's way yet; make the material opaque, or let an image give the alpha",
+            m.name, builder_.texture_nodes_[size_t(m.base_texture.node)].name));
     }
     const size_t index = size_t(&m - builder_.materials_.data());
     if (material_colored_[index]) {
@@ -218,6 +244,13 @@ Material SceneAssembly::packed_material(const MaterialInput& input)
 void SceneAssembly::assemble_materials()
 {
     uv_slots_.fill(-1);
+    const unsigned first_uv = ATTRIBUTE_TexCoord0 | ATTRIBUTE_TexCoord0Dx | ATTRIBUTE_TexCoord0Dy;
+    if ((attributes_ & first_uv) != 0) {
+        uv_slots_[0] = uv_set_count_++;
+    }
+    if ((attributes_ & ATTRIBUTE_TexCoord1) != 0) {
+        uv_slots_[1] = uv_set_count_++;
+    }
     for (size_t k = 0; k < builder_.materials_.size(); ++k) {
         const MaterialInput& input = builder_.materials_[k];
         const TextureUse none;
@@ -236,6 +269,9 @@ void SceneAssembly::assemble_materials()
                 data_.materials.back().emission_slot < 0 ? -1 : input.emission_texture.image;
             const float4 e = data_.materials.back().emission;
             mean = {e.x, e.y, e.z};
+            if (data_.materials.back().emission_slot == TEXTURE_PROCEDURAL) {
+                mean = {0, 0, 0};  // found by scattered rays alone: its power is not known
+            }
             for (size_t c = 0; c < 3 && image >= 0; ++c) {
                 mean[c] *= pictures_[size_t(image)].mean_srgb[c];
             }
@@ -261,7 +297,7 @@ void SceneAssembly::assemble_effects()
         set_if(m.base_slot >= 0, EFFECT_BASE_TEXTURE);
         set_if(m.metallic_roughness_slot >= 0 || m.specular_slot >= 0 || m.specular_color_slot >= 0,
                EFFECT_SURFACE_TEXTURES);
-        set_if(m.normal_slot >= 0, EFFECT_NORMAL_MAP);
+        set_if(m.normal_slot != -1, EFFECT_NORMAL_MAP);
         set_if(m.emission.x > 0 || m.emission.y > 0 || m.emission.z > 0, EFFECT_EMISSION);
         set_if(m.emission_slot >= 0, EFFECT_EMISSION_TEXTURE);
         set_if(m.alpha_mode != ALPHA_OPAQUE, EFFECT_ALPHA);

@@ -3,6 +3,8 @@
 #include "host/scene/environment.hpp"
 #include "host/scene/tangents.hpp"
 
+#include "common/textures/procedural.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
@@ -134,6 +136,7 @@ SceneData SceneAssembly::run()
     data_.settings[0].environment_light = -1;
     survey_placements();
     survey_materials();
+    survey_textures();
     assemble_images();
     assemble_materials();
     assemble_geometry();
@@ -145,6 +148,7 @@ SceneData SceneAssembly::run()
     }
     assemble_lights();
     assemble_effects();
+    assemble_textures();
     tell_what_was_repaired();
     return std::move(data_);
 }
@@ -153,7 +157,16 @@ const TextureUse* SceneAssembly::normal_texture(const MeshPart& part) const
 {
     const MaterialInput& material = builder_.materials_[size_t(part.material)];
     const TextureUse& use = material.normal_texture;
-    return use.image >= 0 && !material.is_unlit ? &use : nullptr;
+    return (use.image >= 0 || use.node >= 0) && !material.is_unlit ? &use : nullptr;
+}
+
+// Whether a mesh's vertices are kept in world space. Not where a texture asks for positions in the
+// mesh's own.
+bool SceneAssembly::is_merged(const SceneBuilder::Placement& placement) const
+{
+    const bool keeps_own = (attributes_ & ATTRIBUTE_LocalPos) != 0;
+    return placement_counts_[size_t(placement.mesh)] == 1 &&
+           (!keeps_own || placement.to_world.is_identity());
 }
 
 void SceneAssembly::tell_what_was_repaired()
@@ -269,7 +282,9 @@ void SceneAssembly::prepare_part(const std::string& where, MeshPart& part)
     if (!part.normals.empty()) {
         repaired_normals_ += repair_normals(part);
     }
+    const TextureUse plain;
     const TextureUse* map = normal_texture(part);
+    if (!map && any_tangents_) map = &plain;
     const auto is_bad = [](const float4& t) {
         return !is_finite(xyz(t)) || length(to_vec(t)) == 0;
     };
@@ -318,7 +333,7 @@ void SceneAssembly::reserve_geometry()
     if (any_normals_) {
         data_.normals.reserve(vertices);
     }
-    if (any_normal_map_) {
+    if (any_normal_map_ || any_tangents_) {
         data_.tangents.reserve(vertices);
     }
     if (any_colors_) {
@@ -344,7 +359,7 @@ void SceneAssembly::append_vertices(const MeshPart& part, const Transform& to_wo
                                         : normal_pack(to_float3(unit(to_object.transposed_vector(
                                               to_vec(part.normals[v]))))));
         }
-        if (any_normal_map_) {
+        if (any_normal_map_ || any_tangents_) {
             data_.tangents.push_back(part.tangents.empty()
                                          ? 0
                                          : packed_tangent(part.tangents[v], to_world, is_mirrored));
@@ -419,7 +434,7 @@ void SceneAssembly::assemble_geometry()
     Instance world = placed_instance({}, {});
     int object = 0;
     for (const auto& placement : builder_.placements_) {
-        if (placement_counts_[size_t(placement.mesh)] == 1) {
+        if (is_merged(placement)) {
             append_mesh(builder_.meshes_[size_t(placement.mesh)], placement.to_world);
             data_.triangle_objects.resize(data_.triangles.size(), object);
         }
@@ -435,7 +450,7 @@ void SceneAssembly::assemble_geometry()
     for (const auto& placement : builder_.placements_) {
         const size_t m = size_t(placement.mesh);
         ++object;
-        if (placement_counts_[m] < 2) {
+        if (is_merged(placement)) {
             continue;
         }
         if (first_triangle[m] < 0) {

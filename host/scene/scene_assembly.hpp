@@ -48,16 +48,24 @@ private:
     void assemble_materials();
     Material packed_material(const MaterialInput& input);
     int add_slot(const TextureUse& use, bool is_srgb);
+    int add_image_slot(const TextureUse& use, bool is_srgb, int stored_set);
     bool can_be_transparent(const MaterialInput& input) const;
     void assemble_effects();
+
+    // texture_assembly.cpp
+    void survey_textures();
+    void assemble_textures();
 
     // light_assembly.cpp
     void assemble_lights();
     void add_triangle_lights(std::vector<double>& powers);
     void add_punctual_lights(std::vector<double>& powers);
 
+    // A material's slots, by SLOT_*.
+    static std::array<const TextureUse*, SLOT_COUNT> slots_of(const MaterialInput& material);
     bool is_used(int material) const { return material_used_[size_t(material)]; }
     const TextureUse* normal_texture(const MeshPart& part) const;
+    bool is_merged(const SceneBuilder::Placement& placement) const;
 
     SceneBuilder& builder_;
     SceneData data_;
@@ -68,9 +76,12 @@ private:
     int uv_set_count_ = 0;
     bool any_normals_ = false;
     bool any_normal_map_ = false;
+    bool any_tangents_ = false;  // asked for by textures
     bool any_colors_ = false;
     size_t repaired_normals_ = 0;
     size_t repaired_uvs_ = 0;
+    std::vector<char> node_used_;  // by some material in use, directly or through others
+    unsigned attributes_ = 0;      // that the textures in use ask for
     std::vector<PictureFacts> pictures_;
     std::vector<std::array<double, 3>> mean_emission_;  // by material
     double environment_power_ = 0;  // luminance of its radiance, over all directions; 0 without

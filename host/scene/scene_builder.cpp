@@ -29,6 +29,20 @@ int SceneBuilder::add_material(const MaterialInput& material)
     return int(materials_.size()) - 1;
 }
 
+int SceneBuilder::add_texture_function(TextureFunction function)
+{
+    texture_functions_.push_back(std::move(function));
+    return int(texture_functions_.size()) - 1;
+}
+
+int SceneBuilder::add_texture_node(TextureNode node)
+{
+    texture_nodes_.push_back(std::move(node));
+    return int(texture_nodes_.size()) - 1;
+}
+
+void SceneBuilder::set_textures(const TextureSettings& settings) { texture_settings_ = settings; }
+
 int SceneBuilder::add_mesh(std::vector<MeshPart> parts, const std::string& name)
 {
     Mesh mesh{

@@ -16,6 +16,7 @@
 #include "host/scene/transform.hpp"
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,29 @@ struct TextureUse {
     int wrap_v = WRAP_REPEAT;
     int filter = TEXTURE_LINEAR;
     std::array<std::array<double, 3>, 2> to_uv{{{1, 0, 0}, {0, 1, 0}}};
+    int node = -1;  // of add_texture_node(), instead of an image: what it computes is read
+};
+
+// What an argument of a procedural texture is given: numbers, images or another node's result.
+struct TextureInput {
+    std::vector<double> numbers{};     // element after element, component after component
+    std::vector<TextureUse> images{};  // one, or those of an array
+    bool is_linear = false;            // images: values, not colours in sRGB
+    int node = -1;
+};
+
+// One node of the graph: a function with its arguments.
+struct TextureNode {
+    std::string name{};
+    int function = 0;  // of add_texture_function()
+    std::map<std::string, TextureInput> arguments{};
+};
+
+// For all procedural textures of a scene.
+struct TextureSettings {
+    int occlusion_rays = 16;        // of each request
+    double occlusion_distance = 0;  // where a request asks none; 0: a tenth of the scene's radius
+    double time = 0;                // seconds
 };
 
 // The metallic-roughness material of glTF with its defaults, except that metallic is 0.
@@ -90,6 +114,9 @@ public:
     // Each returns the number by which the others refer to it.
     int add_image(Picture picture);
     int add_material(const MaterialInput& material);
+    int add_texture_function(TextureFunction function);
+    int add_texture_node(TextureNode node);
+    void set_textures(const TextureSettings& settings);
     int add_mesh(std::vector<MeshPart> parts, const std::string& name = "");
     int add_mesh(MeshPart part, const std::string& name = "");
 
@@ -97,8 +124,9 @@ public:
     // instanced. Throws SceneError if the transform is not finite.
     void place(int mesh, const Transform& to_world = {}, const std::string& name = "");
 
-    // Gives every placement its own copy of meshes whose copies hold no more than `triangles` in all:
-    // the second level of a tree and an instance's transforms cost more than so few triangles save.
+    // Gives every placement its own copy of meshes whose copies hold no more than `triangles` in
+    // all: the second level of a tree and an instance's transforms cost more than so few triangles
+    // save.
     void copy_small_meshes(size_t triangles);
 
     void add_light(const PunctualLight& light);
@@ -145,6 +173,9 @@ private:
 
     std::vector<Picture> pictures_;
     std::vector<MaterialInput> materials_;
+    std::vector<TextureFunction> texture_functions_;
+    std::vector<TextureNode> texture_nodes_;
+    TextureSettings texture_settings_;
     std::vector<Mesh> meshes_;
     std::vector<Placement> placements_;
     std::vector<PunctualLight> lights_;

@@ -50,7 +50,10 @@ float3 mapped_normal(const SceneData& data)
     if (data.instances[size_t(instance)].is_mirrored) {
         outside = -outside;
     }
-    return surface_mapped_normal(&scene, instance, triangle, make_float2(0.3f, 0.3f), outside);
+    const float2 weights = make_float2(0.3f, 0.3f);
+    const int slot = scene.materials[scene.triangles[triangle].material].normal_slot;
+    const float4 texel = surface_texture(&scene, triangle, weights, slot);
+    return surface_mapped_normal(&scene, instance, triangle, weights, outside, texel);
 }
 
 TEST(Surface, A_normal_map_leans_the_same_way_on_merged_and_instanced_meshes)

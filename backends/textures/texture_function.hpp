@@ -1,0 +1,58 @@
+// Procedural textures of a scene as the devices are given them: what the texture tool made of each
+// user function, and what the scene's graph needs at run time. Plain data.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace diptych {
+
+struct TextureArgument {
+    std::string name;
+    std::string type;  // of a value or an element: float, int2, sam2D ...
+    bool is_array = false;
+    int length = 0;  // of an array, as declared; 0: as long as the scene makes it
+};
+
+enum class Hemisphere { upper, lower, both };
+
+struct OcclusionRequest {
+    double distance = 0;
+    int distance_argument = -1;  // the argument that gives it, if any
+    Hemisphere hemisphere = Hemisphere::upper;
+    bool is_same_object = false;
+};
+
+// One function of a user's file, translated.
+struct TextureFunction {
+    std::string id;     // in generated code
+    std::string file;   // as the user named it
+    std::string entry;  // the user's own name of it
+    std::string cpp;    // for namespace user_language
+    std::string opencl;
+    std::vector<TextureArgument> arguments;
+    std::vector<OcclusionRequest> occlusion;
+    unsigned attributes = 0;  // mask of ATTRIBUTE_*
+    std::vector<std::string> warnings;
+};
+
+// One use of a node of the graph by a material: its arguments' region.
+struct TextureAttachment {
+    std::string node;
+    int material = 0;
+    int function = 0;
+    int first_word = 0;  // in the words of the materials
+    int words = 0;       // in whole pages
+};
+
+struct SceneTextures {
+    std::vector<TextureFunction> functions;
+    std::vector<TextureAttachment> attachments;
+    unsigned attributes = 0;    // of all functions
+    int slots = 1;              // of the interpreter's stack
+    int outputs = 0;            // results a path that evaluate_surface reads
+    int occlusion_results = 0;  // a path
+    int first_page = 0;         // of the materials' buffer that no longer holds a material
+};
+
+}  // namespace diptych

@@ -1,0 +1,209 @@
+// Procedural textures as the kernels see them: what a texture knows about the place it is asked
+// for, the programs that run textures of a material in order, and the arguments they are given.
+// Both lie behind the materials in the same buffer, in whole pages of the size of a Material, as
+// words (material_word): changing an argument is changing bytes.
+//
+//   program: {steps, group, first request, requests, first step ...}, each step TEXTURE_STEP_WORDS words:
+//            {function, region, stack slot, outputs, first occlusion request, 0, 0, 0}
+//   request: {word of its distance, hemisphere, whether of the same object only, word of the
+//            distance to take where the first is not above zero}
+//   region:  four words an argument: {source, first word of the value, elements, 0}, then values.
+//            source >= 0: the value is what lies in that stack slot; -1: a constant.
+#pragma once
+
+#include "common/textures/texture_place.h"
+
+#define TEXTURE_PROGRAM_WORDS 4
+#define TEXTURE_STEP_WORDS 8
+#define TEXTURE_DESCRIPTOR_WORDS 4
+
+// What a texture may ask about the place. X(name in readAttr, bit, type, field)
+#define TEXTURE_ATTRIBUTES(X)               \
+    X(WorldPos, 0, float3, world_position)  \
+    X(LocalPos, 1, float3, local_position)  \
+    X(Normal, 2, float3, normal)            \
+    X(GeomNormal, 3, float3, face_normal)   \
+    X(Tangent, 4, float3, tangent)          \
+    X(Bitangent, 5, float3, bitangent)      \
+    X(TexCoord0, 6, float2, uv0)            \
+    X(TexCoord1, 7, float2, uv1)            \
+    X(VertexColor, 8, float4, vertex_color) \
+    X(ViewDir, 9, float3, view_direction)   \
+    X(ObjectId, 10, int, object)            \
+    X(InstanceId, 11, int, instance)        \
+    X(PrimitiveId, 12, int, primitive)      \
+    X(Time, 13, float, time)                \
+    X(TexCoord0Dx, 14, float2, uv0_dx)      \
+    X(TexCoord0Dy, 15, float2, uv0_dy)
+
+#define ATTRIBUTE_BIT(name, bit, type, field) ATTRIBUTE_##name = 1 << bit,
+enum { TEXTURE_ATTRIBUTES(ATTRIBUTE_BIT) };
+
+// Iterations of all loops of one evaluation together.
+#define TEXTURE_BUDGET 1048576
+
+// Everything in world space and of unit length where it is a direction.
+#define ATTRIBUTE_FIELD(name, bit, type, field) type field;
+typedef struct {
+    const Scene* scene;
+    const Paths* paths;
+    int path;
+    TEXTURE_ATTRIBUTES(ATTRIBUTE_FIELD)
+    const float* stack;  // results so far: component c of slot s at [(4 s + c) stack_stride + lane]
+    int stack_stride;
+    int lane;
+    int first_occlusion;  // of the step that runs
+    int budget;           // iterations of its loops that are left
+    int fault_line;       // of the user's file, where the budget ran out; 0: it did not
+    int clamped;          // indexes that were out of range
+} TextureContext;
+
+// What an evaluation gives, whichever float4 a dialect has.
+typedef struct {
+    float r, g, b, a;
+} TextureValue;
+
+typedef struct {
+    int steps;
+    int group;  // programs of one group run the same functions in the same slots
+    int first;  // word of the first step
+} TextureProgram;
+
+typedef struct {
+    int function;
+    int region;
+    int slot;
+    int outputs;  // mask over the results that evaluate_surface reads
+    int first_occlusion;
+} TextureStep;
+
+SHARED TextureProgram texture_program(const Scene* scene, int word)
+{
+    TextureProgram program;
+    program.steps = (int)material_word(scene, word);
+    program.group = (int)material_word(scene, word + 1);
+    program.first = word + TEXTURE_PROGRAM_WORDS;
+    return program;
+}
+
+SHARED TextureStep texture_step(const Scene* scene, int first, int k)
+{
+    const int word = first + k * TEXTURE_STEP_WORDS;
+    TextureStep step;
+    step.function = (int)material_word(scene, word);
+    step.region = (int)material_word(scene, word + 1);
+    step.slot = (int)material_word(scene, word + 2);
+    step.outputs = (int)material_word(scene, word + 3);
+    step.first_occlusion = (int)material_word(scene, word + 4);
+    return step;
+}
+
+// The place that path i has met, as far as the attributes in `asked` (a constant) go; what the mesh
+// lacks is zero, vertex colours white.
+SHARED TextureContext texture_context(const Scene* scene, const Paths* paths, int i, uint asked)
+{
+    const TexturePlace place = texture_place(scene, paths, i);
+    const float sign = place.is_front ? 1.0f : -1.0f;
+    const float3 zero = make_float3(0.0f, 0.0f, 0.0f);
+    const float2 none = make_float2(0.0f, 0.0f);
+    TextureContext tx;
+    tx.scene = scene;
+    tx.paths = paths;
+    tx.path = i;
+    tx.world_position = place.position;
+    tx.face_normal = place.face_normal * sign;
+    tx.normal = place.normal * sign;
+    tx.view_direction = -get_ray_direction(paths, i);
+    tx.local_position = place.position;
+    if ((asked & ATTRIBUTE_LocalPos) != 0u && uses(scene, EFFECT_INSTANCES))
+        tx.local_position = point_to_object(scene, place.instance, place.position);
+    tx.tangent = zero;
+    tx.bitangent = zero;
+    if ((asked & (ATTRIBUTE_Tangent | ATTRIBUTE_Bitangent)) != 0u) {
+        const TextureFrame frame =
+            texture_frame(scene, place.instance, place.triangle, place.weights, place.normal);
+        tx.tangent = frame.tangent;
+        tx.bitangent = frame.bitangent;
+    }
+    tx.uv0 = none;
+    tx.uv1 = none;
+    if ((asked & ATTRIBUTE_TexCoord0) != 0u)
+        tx.uv0 = surface_uv_of_set(scene, place.triangle, place.weights,
+                                   scene->settings[0].texture_uv_set[0]);
+    if ((asked & ATTRIBUTE_TexCoord1) != 0u)
+        tx.uv1 = surface_uv_of_set(scene, place.triangle, place.weights,
+                                   scene->settings[0].texture_uv_set[1]);
+    tx.uv0_dx = none;
+    tx.uv0_dy = none;
+    tx.vertex_color = make_float4(1.0f, 1.0f, 1.0f, 1.0f);
+    if ((asked & ATTRIBUTE_VertexColor) != 0u && uses(scene, EFFECT_VERTEX_COLOR))
+        tx.vertex_color = surface_vertex_color(scene, place.triangle, place.weights);
+    tx.object = 0;
+    if ((asked & ATTRIBUTE_ObjectId) != 0u)
+        tx.object = texture_object(scene, place.instance, place.triangle);
+    tx.instance = place.instance;
+    tx.primitive = place.triangle;
+    tx.time = (float)scene->settings[0].time;
+    tx.stack = 0;
+    tx.stack_stride = 1;
+    tx.lane = 0;
+    tx.first_occlusion = 0;
+    tx.budget = TEXTURE_BUDGET;
+    tx.fault_line = 0;
+    tx.clamped = 0;
+    return tx;
+}
+
+SHARED TextureValue texture_texel(const Scene* scene, int slot, float u, float v)
+{
+    const float4 texel = texture_read(scene, slot, make_float2(u, v));
+    TextureValue value;
+    value.r = texel.x;
+    value.g = texel.y;
+    value.b = texel.z;
+    value.a = texel.w;
+    return value;
+}
+
+// The same with another wrap and filter than the slot's (see TextureSlot).
+SHARED TextureValue texture_fetch(const Scene* scene, int slot, float u, float v, int wrap,
+                                  int filter)
+{
+    const float4 texel = texture_read_with(scene, slot, make_float2(u, v), wrap, filter);
+    TextureValue value;
+    value.r = texel.x;
+    value.g = texel.y;
+    value.b = texel.z;
+    value.a = texel.w;
+    return value;
+}
+
+// Before a step is run: its own occlusion results, a budget of its own.
+SHARED void texture_begin(TextureContext* tx, TextureStep step)
+{
+    tx->first_occlusion = step.first_occlusion;
+    tx->budget = TEXTURE_BUDGET;
+}
+
+SHARED void texture_push(float* stack, int slot, TextureValue value)
+{
+    if (slot >= 0) {
+        stack[4 * slot] = value.r;
+        stack[4 * slot + 1] = value.g;
+        stack[4 * slot + 2] = value.b;
+        stack[4 * slot + 3] = value.a;
+    }
+}
+
+// Hands what a step gave to the stages behind, for each of the results that it is.
+SHARED void texture_store(const Paths* paths, int i, int outputs, TextureValue value)
+{
+    for (int output = 0; output < SLOT_COUNT; ++output) {
+        if ((outputs >> output & 1) != 0) {
+            set_texture_result(paths, 4 * output, i, value.r);
+            set_texture_result(paths, 4 * output + 1, i, value.g);
+            set_texture_result(paths, 4 * output + 2, i, value.b);
+            set_texture_result(paths, 4 * output + 3, i, value.a);
+        }
+    }
+}

@@ -1,0 +1,86 @@
+// Occlusion that textures ask for: rays about the place that a path has met, traced by a stage of
+// their own before the textures are evaluated.
+#pragma once
+
+#include "common/alpha.h"
+#include "common/materials/metallic_roughness.h"
+#include "common/textures/procedural.h"
+
+// As backends/textures/texture_function.hpp has them.
+#define HEMISPHERE_UPPER 0
+#define HEMISPHERE_LOWER 1
+#define HEMISPHERE_BOTH 2
+
+#define TEXTURE_REQUEST_WORDS 4
+
+typedef struct {
+    float distance;
+    int hemisphere;
+    int is_same_object;
+} TextureRequest;
+
+// Requests of all steps of a program, in the order of their results.
+typedef struct {
+    int first;  // word of the first
+    int count;
+} TextureRequests;
+
+SHARED TextureRequests texture_requests(const Scene* scene, int program)
+{
+    TextureRequests requests;
+    requests.first = (int)material_word(scene, program + 2);
+    requests.count = (int)material_word(scene, program + 3);
+    return requests;
+}
+
+// The distance is an argument, or a constant beside the arguments: a word either way.
+SHARED TextureRequest texture_request(const Scene* scene, int first, int k)
+{
+    const int word = first + k * TEXTURE_REQUEST_WORDS;
+    const float asked = as_float(material_word(scene, (int)material_word(scene, word)));
+    const float otherwise = as_float(material_word(scene, (int)material_word(scene, word + 3)));
+    TextureRequest request;
+    request.distance = asked > 0.0f ? asked : otherwise;
+    request.hemisphere = (int)material_word(scene, word + 1);
+    request.is_same_object = (int)material_word(scene, word + 2);
+    return request;
+}
+
+typedef struct {
+    float3 origin;
+    float3 direction;
+} TextureRay;
+
+// Ray `ray` of a request of path i: cosine-distributed about the shading normal, or opposite to it;
+// of `both`, every second. The rays of a request are stratified among themselves.
+SHARED TextureRay texture_ray(const Scene* scene, const Paths* paths, int i, TexturePlace place,
+                              int request, int hemisphere, int ray)
+{
+    const SampleKey path_key =
+        sample_key(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i));
+    const uint bits = (uint)(get_depth(paths, i) * 64 + request);
+    SampleKey key;
+    key.index = (uint)ray;
+    key.seed = hash_pair(hash_pair(path_key.seed, path_key.index), bits ^ 0x2545f491u);
+    const float2 u = sample_pair(key, 0);
+    const int is_lower =
+        (hemisphere == HEMISPHERE_LOWER) | ((hemisphere == HEMISPHERE_BOTH) & ((ray & 1) != 0));
+    const float side = (is_lower ? -1.0f : 1.0f) * (place.is_front ? 1.0f : -1.0f);
+    const float3 normal = place.normal * side;
+    const float3 face_normal = place.face_normal * side;
+    const float turn = 2.0f * u.y;
+    const float disc = math_sqrt(u.x);
+    TextureRay result;
+    result.direction = frame_tangent(normal) * (disc * math_cospi(turn)) +
+                       frame_bitangent(normal) * (disc * math_sinpi(turn)) +
+                       normal * math_sqrt(1.0f - u.x);
+    result.origin = place.position + face_normal * place.error;
+    return result;
+}
+
+SHARED uint texture_ray_seed(const Scene* scene, const Paths* paths, int i, int request, int ray)
+{
+    const uint seed = alpha_seed(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i),
+                                 get_depth(paths, i), 1);
+    return hash_pair(seed, (uint)(request * 256 + ray + 1));
+}

@@ -1,0 +1,237 @@
+// The stage that holds user code, on every backend: what it leaves is what the stages behind read.
+#include "backends/textures/native_stage.hpp"
+#include "common/textures/procedural.h"
+#include "host/commands/trace_comparison.hpp"
+#include "host/render/render.hpp"
+#include "tests/laws/measure.hpp"
+#include "tests/textures/handwritten.hpp"
+
+#include <set>
+
+namespace {
+
+using namespace diptych;
+using textures::handwritten;
+
+TextureFunction constant_color(const std::string& id = "t0")
+{
+    return handwritten(
+        id, {{"color", "float3"}, {"scale", "float"}},
+        "    return TX_NEW(float4, color.x * scale, color.y * scale, color.z * scale,"
+        " 1.0f);");
+}
+
+TextureFunction stripes(const std::string& id = "t1")
+{
+    return handwritten(id, {{"a", "float4"}, {"b", "float4"}, {"width", "float"}},
+                       "    const float3 p = tx_attribute_WorldPos(tx);\n"
+                       "    const float2 uv = tx_attribute_TexCoord0(tx);\n"
+                       "    const float x = (p.x + 0.3f * p.y + uv.x) / width;\n"
+                       "    const float t = x - math_floor(x);\n"
+                       "    return TX_NEW(float4, a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t,\n"
+                       "                  a.z + (b.z - a.z) * t, 1.0f);",
+                       ATTRIBUTE_WorldPos | ATTRIBUTE_TexCoord0);
+}
+
+TextureInput numbers(std::vector<double> values) { return {.numbers = std::move(values)}; }
+TextureUse node(int k)
+{
+    TextureUse use;
+    use.node = k;
+    return use;
+}
+
+// A furnace: a convex body of reflectance r in a uniform sky of radiance 1 looks like r.
+SceneData furnace(SceneBuilder& scene, MaterialInput material)
+{
+    material.specular = 0;
+    const int m = scene.add_material(material);
+    scene.place(scene.add_mesh(quad_mesh({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, m)));
+    scene.set_environment(laws::environment_of([](const Vec3&) { return 1.0; }));
+    laws::look(scene, {0, 0, 3}, {0, 0, 0}, 0.5);
+    return laws::finish(scene);
+}
+
+class Textures : public laws::OnEachBackend {};
+
+TEST_P(Textures, TX_1_ConstantColoursTheSurface)
+{
+    SceneBuilder scene;
+    const int function = scene.add_texture_function(constant_color());
+    const int n = scene.add_texture_node(
+        {"grey", function, {{"color", numbers({0.5, 0.25, 1})}, {"scale", numbers({0.8})}}});
+    const SceneData data = furnace(scene, {.base_texture = node(n)});
+    EXPECT_TRUE(data.effects & EFFECT_PROCEDURAL);
+    EXPECT_EQ(data.textures.outputs, 1);
+    EXPECT_TRUE(laws::obeys(measure(data), 0.2));
+}
+
+TEST_P(Textures, TX_5_OneCopyOfCodeHasARegionForEachUse)
+{
+    SceneBuilder scene;
+    const int function = scene.add_texture_function(constant_color());
+    const int dark = scene.add_texture_node(
+        {"dark", function, {{"color", numbers({0.1, 0.1, 0.1})}, {"scale", numbers({1})}}});
+    const int bright = scene.add_texture_node(
+        {"bright", function, {{"color", numbers({0.9, 0.9, 0.9})}, {"scale", numbers({1})}}});
+    const int a = scene.add_material({.specular = 0, .base_texture = node(dark)});
+    const int b = scene.add_material({.specular = 0, .base_texture = node(bright)});
+    scene.place(scene.add_mesh(quad_mesh({-1, -1, 0}, {1, 0, 0}, {0, 2, 0}, a)));
+    scene.place(scene.add_mesh(quad_mesh({0, -1, 0}, {1, 0, 0}, {0, 2, 0}, b)));
+    scene.set_environment(laws::environment_of([](const Vec3&) { return 1.0; }));
+    laws::look(scene, {0, 0, 3}, {0, 0, 0}, 0.5);
+    const SceneData data = laws::finish(scene);
+    EXPECT_EQ(data.textures.functions.size(), 1u);
+    EXPECT_EQ(data.textures.attachments.size(), 2u);
+    EXPECT_TRUE(laws::obeys(measure(data), 0.5));
+}
+
+TEST_P(Textures, TX_7_NodesReadOtherNodes)
+{
+    SceneBuilder scene;
+    const int color = scene.add_texture_function(constant_color("t0"));
+    const int product = scene.add_texture_function(
+        handwritten("t1", {{"a", "float4"}, {"b", "float"}},
+                    "    return TX_NEW(float4, a.x * b, a.y * b, a.z * b, 1.0f);"));
+    const int half = scene.add_texture_node(
+        {"half", color, {{"color", numbers({0.5, 0.5, 0.5})}, {"scale", numbers({1})}}});
+    const int twice =
+        scene.add_texture_node({"twice", product, {{"a", {.node = half}}, {"b", {.node = half}}}});
+    const SceneData data = furnace(scene, {.base_texture = node(twice)});
+    EXPECT_EQ(data.textures.slots, 1);
+    EXPECT_TRUE(laws::obeys(measure(data), 0.25));
+}
+
+ON_EACH_BACKEND(Textures);
+
+// Something of everything that the stage can be asked for.
+SceneData busy_textures()
+{
+    SceneBuilder scene;
+    const int color = scene.add_texture_function(constant_color("t0"));
+    const int striped = scene.add_texture_function(stripes("t1"));
+    const int sampled = scene.add_texture_function(
+        handwritten("t2", {{"image", "sam2D"}, {"tint", "float4"}},
+                    "    const float4 c = tx_sample(tx, image, tx_attribute_TexCoord0(tx));\n"
+                    "    const float3 n = tx_attribute_Normal(tx);\n"
+                    "    const float3 t = tx_attribute_Tangent(tx);\n"
+                    "    return TX_NEW(float4, c.x * tint.x, c.y * tint.y + 0.1f * math_abs(n.y),\n"
+                    "                  c.z * tint.z + 0.1f * math_abs(t.x), 0.5f + 0.5f * n.z);",
+                    ATTRIBUTE_TexCoord0 | ATTRIBUTE_Normal | ATTRIBUTE_Tangent));
+    Picture checks{4, 4, {}, {}, true, 0};
+    for (int k = 0; k < 16; ++k) {
+        const std::uint8_t value = (k + k / 4) % 2 ? 220 : 60;
+        checks.bytes.insert(checks.bytes.end(), {value, 128, value, 255});
+    }
+    TextureUse image;
+    image.image = scene.add_image(checks);
+    const int red = scene.add_texture_node(
+        {"red", color, {{"color", numbers({0.8, 0.1, 0.1})}, {"scale", numbers({0.9})}}});
+    const int bands = scene.add_texture_node(
+        {"bands",
+         striped,
+         {{"a", {.node = red}}, {"b", numbers({0.1, 0.2, 0.9, 1})}, {"width", numbers({0.25})}}});
+    const int tinted = scene.add_texture_node(
+        {"tinted", sampled, {{"image", {.images = {image}}}, {"tint", {.node = bands}}}});
+    const int floor = scene.add_material({.roughness = 0.4f, .base_texture = node(tinted)});
+    const int wall = scene.add_material({.specular = 0, .base_texture = node(bands)});
+    const int metal = scene.add_material({.metallic = 1,
+                                          .roughness = 0.6f,
+                                          .base_texture = node(bands),
+                                          .metallic_roughness_texture = node(tinted),
+                                          .normal_texture = node(tinted)});
+    const int lamp = scene.add_material({.emission = {5, 4, 3}});
+    const int glow = scene.add_material(
+        {.specular = 0, .emission = {0.5f, 0.5f, 0.5f}, .emission_texture = node(bands)});
+    scene.place(scene.add_mesh(quad_mesh({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, floor)));
+    scene.place(scene.add_mesh(quad_mesh({-2, 0, -2}, {4, 0, 0}, {0, 2, 0}, wall)));
+    scene.place(scene.add_mesh(quad_mesh({-1.5, 0.1, -1.5}, {1, 0, 0}, {0, 1, 0}, glow)));
+    scene.place(scene.add_mesh(quad_mesh({-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, lamp)));
+    const int ball = scene.add_mesh(sphere_mesh({0, 0, 0}, 0.3, 24, metal));
+    for (int k = 0; k < 4; ++k) scene.place(ball, translation(0.7 * k - 1, 0.3, -0.2 * k));
+    scene.set_camera({.eye = {0.5, 1.2, 3}, .target = {0, 0.4, 0}});
+    scene.set_picture_size(32, 32);
+    SceneData data = scene.finish();
+    data.settings[0].max_bounces = 4;
+    return data;
+}
+
+void expect_parity(const std::string& a, const std::string& b, const Bound& bound, double share)
+{
+    SceneData scene = busy_textures(), other = scene;
+    std::unique_ptr<Backend> first, second;
+    try {
+        first = make_backend(a, {}), second = make_backend(b, {});
+    } catch (const std::runtime_error& error) {
+        GTEST_SKIP() << error.what();
+    }
+    first->upload(scene);
+    second->upload(other);
+    const std::vector<WorkItem> items{{8, 8, 0, 0}};
+    const Dispatch dispatch{items, 8};
+    const TraceComparison result = compare_traces(*first, *second, scene.effects, dispatch, bound);
+    int parted = 0;
+    for (const char has : result.has_parted) parted += has ? 1 : 0;
+    EXPECT_LE(parted, share * dispatch.paths());
+    if (result.first && parted > share * dispatch.paths())
+        ADD_FAILURE() << "first in " << stage_names[result.first->stage] << ", bounce "
+                      << result.first->bounce << ", path " << result.first->path << ", "
+                      << result.first->buffer << ": " << result.first->a << " and "
+                      << result.first->b;
+}
+
+TEST(TextureParity, OpenclHasTheTwinsBits) { expect_parity("twin", "opencl", {}, 0); }
+
+TEST(TextureParity, VectorLanesFollowTheTwin)
+{
+    expect_parity("twin", "cpu", {.ulps = 0, .relative = 0}, 0.001);
+}
+
+TEST(TextureParity, DoubleFollowsTheTwin)
+{
+    expect_parity("twin", "double", {.ulps = 0, .relative = 2e-2}, 0.05);
+}
+
+TEST(TextureParity, DebugTexturesHaveTheSameBits)
+{
+    SceneData scene = busy_textures();
+    std::vector<std::vector<float>> pictures;
+    for (const bool is_debug : {false, true}) {
+        BackendOptions options;
+        options.debug_textures = is_debug;
+        const std::unique_ptr<Backend> twin = make_backend("twin", options);
+        twin->upload(scene);
+        RenderOptions render_options;
+        render_options.samples = 4;
+        pictures.push_back(
+            image::beauty_of(render(*twin, scene, render_options).film.picture()).pixels);
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+}
+
+// TX-3: another argument is other bytes: nothing is compiled.
+TEST(TextureArguments, TX_3_ChangingOneCompilesNothing)
+{
+    const auto with = [](double grey) {
+        SceneBuilder scene;
+        const int function = scene.add_texture_function(constant_color());
+        const int n = scene.add_texture_node(
+            {"grey", function, {{"color", numbers({grey, grey, grey})}, {"scale", numbers({1})}}});
+        return furnace(scene, {.base_texture = node(n)});
+    };
+    for (const char* name : {"cpu", "twin", "opencl"}) {
+        std::unique_ptr<Backend> backend;
+        try {
+            backend = make_backend(name, {});
+        } catch (const std::runtime_error&) {
+            continue;
+        }
+        SceneData first = with(0.25), second = with(0.75);
+        EXPECT_TRUE(laws::obeys(laws::measure(*backend, first), 0.25)) << name;
+        const unsigned long before = texture_compilations();
+        EXPECT_TRUE(laws::obeys(laws::measure(*backend, second), 0.75)) << name;
+        EXPECT_EQ(texture_compilations(), before) << name;
+    }
+}
+
+}  // namespace
