@@ -7,6 +7,9 @@ typedef struct {
     int slot;  // of the scene's texture slots; -1: white
 } sam2D;
 
+// The predecessor's handle of a hit, which textures only pass on.
+typedef struct SurfaceInfo SurfaceInfo;
+
 // Bits of the last argument of texture2D.
 #define TX_FETCH_POINT 0x10000000u
 #define TX_FETCH_CLAMP_U 0x40000000u

@@ -107,25 +107,25 @@
     TX_FLOAT_2(TX_F2_##n)                                                                          \
     TX_FLOAT_3(TX_F3_##n)                                                                          \
     TX_FLOAT_INT(TX_FI_##n)                                                                        \
-    TX_TEST_1(TX_T1_##n) TX_TEST_2(TX_T2_##n) TX_INT_2(TX_I2_##n) TX_UINT_2(TX_U2_##n)             \
-        TX_INT_3(TX_I3_##n) TX_INT_3(TX_U3_##n) TX_CONVERT(ilogb, int, float, n) TX_CONVERT(       \
-            nan, float, uint, n) TX_CONVERT(abs, uint, int, n) TX_CONVERT(abs, uint, uint, n)      \
-            TX_CONVERT(popcount, int, int, n) TX_CONVERT(popcount, uint, uint, n) TX_CONVERT(      \
-                clz, int, int, n) TX_CONVERT(clz, uint, uint, n) TX_CAST(as, int, float, n)        \
-                TX_CAST(as, uint, float, n) TX_CAST(as, float, int, n) TX_CAST(as, float, uint, n) \
-                    TX_CAST(as, float, float, n) TX_CAST(as, int, uint, n)                         \
-                        TX_CAST(as, int, int, n) TX_CAST(as, uint, int, n)                         \
-                            TX_CAST(as, uint, uint, n) TX_CAST(convert, int, float, n) TX_CAST(    \
-                                convert, uint, float, n) TX_CAST(convert, float, int, n)           \
-                                TX_CAST(convert, float, uint, n) TX_CAST(convert, float, float, n) \
-                                    TX_CAST(convert, int, uint, n) TX_CAST(convert, int, int, n)   \
-                                        TX_CAST(convert, uint, int, n)                             \
-                                            TX_CAST(convert, uint, uint, n) TX_PICK(float, int, n) \
-                                                TX_PICK(float, uint, n) TX_PICK(int, int, n)       \
-                                                    TX_PICK(int, uint, n) TX_PICK(uint, int, n)    \
-                                                        TX_PICK(uint, uint, n)                     \
-                                                            SHARED uint##n tx_abs_diff_int##n(     \
-                                                                int##n a, int##n b)                \
+    TX_TEST_1(TX_T1_##n)                                                                           \
+    TX_TEST_2(TX_T2_##n)                                                                           \
+    TX_INT_2(TX_I2_##n) TX_UINT_2(TX_U2_##n) TX_INT_3(TX_I3_##n) TX_INT_3(TX_U3_##n) TX_CONVERT(   \
+        ilogb, int, float, n) TX_CONVERT(nan, float, uint, n) TX_CONVERT(abs, uint, int, n)        \
+        TX_CONVERT(abs, uint, uint, n) TX_CONVERT(popcount, int, int, n) TX_CONVERT(               \
+            popcount, uint, uint, n) TX_CONVERT(clz, int, int, n) TX_CONVERT(clz, uint, uint, n)   \
+            TX_CAST(as, int, float, n) TX_CAST(as, uint, float, n) TX_CAST(as, float, int, n)      \
+                TX_CAST(as, float, uint, n) TX_CAST(as, float, float, n) TX_CAST(as, int, uint, n) \
+                    TX_CAST(as, int, int, n) TX_CAST(as, uint, int, n) TX_CAST(as, uint, uint, n)  \
+                        TX_CAST(convert, int, float, n) TX_CAST(convert, uint, float, n)           \
+                            TX_CAST(convert, float, int, n) TX_CAST(convert, float, uint, n)       \
+                                TX_CAST(convert, float, float, n) TX_CAST(convert, int, uint, n)   \
+                                    TX_CAST(convert, int, int, n) TX_CAST(convert, uint, int, n)   \
+                                        TX_CAST(convert, uint, uint, n) TX_PICK(float, int, n)     \
+                                            TX_PICK(float, uint, n) TX_PICK(int, int, n)           \
+                                                TX_PICK(int, uint, n) TX_PICK(uint, int, n)        \
+                                                    TX_PICK(uint, uint, n)                         \
+                                                        SHARED uint##n tx_abs_diff_int##n(         \
+                                                            int##n a, int##n b)                    \
     {                                                                                              \
         return TX_EACH_2_##n(uint##n, tx_abs_diff_int, a, b);                                      \
     }                                                                                              \

@@ -1,0 +1,248 @@
+#include "texture_tool/find.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <clang/AST/ASTConsumer.h>
+#include <clang/AST/ASTContext.h>
+#include <clang/Basic/Diagnostic.h>
+#include <clang/Basic/FileManager.h>
+#include <clang/Frontend/CompilerInstance.h>
+#include <clang/Frontend/FrontendAction.h>
+#include <clang/Lex/Lexer.h>
+#include <clang/Lex/Preprocessor.h>
+#include <clang/Tooling/Tooling.h>
+#include <llvm/Support/MemoryBuffer.h>
+#include <llvm/Support/VirtualFileSystem.h>
+
+#include "texture_tool/language.hpp"
+#include "texture_tool/limits.hpp"
+#include "texture_tool/messages.hpp"
+#include "texture_tool/scan.hpp"
+#include "texture_tool/walk.hpp"
+
+namespace texture_tool {
+
+namespace {
+
+constexpr size_t most_tokens = 1000000;
+const char* const parsed_name = "/texture.c";
+
+// What Clang says, in the tool's words where it has better ones.
+class Diagnostics : public clang::DiagnosticConsumer {
+public:
+    Diagnostics(const std::map<std::string, std::string>& own_names, Description& description)
+        : own_names_(own_names), description_(description)
+    {
+    }
+
+    void HandleDiagnostic(clang::DiagnosticsEngine::Level level,
+                          const clang::Diagnostic& info) override
+    {
+        DiagnosticConsumer::HandleDiagnostic(level, info);
+        llvm::SmallString<256> formatted;
+        info.FormatDiagnostic(formatted);
+        std::string text = formatted.str().str();
+        Problem problem{1, 1, true, ""};
+        if (info.hasSourceManager() && info.getLocation().isValid()) {
+            const clang::SourceManager& sources = info.getSourceManager();
+            const clang::SourceLocation at = sources.getExpansionLoc(info.getLocation());
+            if (sources.isInMainFile(at)) {
+                problem.line = static_cast<int>(sources.getSpellingLineNumber(at));
+                problem.column = static_cast<int>(sources.getSpellingColumnNumber(at));
+            }
+            if (text.find("does not return a value") != std::string::npos) {
+                falls_off.insert({problem.line, problem.column});
+                return;
+            }
+        }
+        if (level < clang::DiagnosticsEngine::Error) return;
+        for (const auto& [name, other] : own_names_)
+            for (size_t at = 0; (at = text.find("'" + other + "'", at)) != std::string::npos; ++at)
+                text.replace(at + 1, other.size(), name);
+        has_errors = true;
+        problem.text = with_remedy(text);
+        const auto same = [&](const Problem& p) { return p.is_error && p.line == problem.line; };
+        if (std::none_of(description_.problems.begin(), description_.problems.end(), same))
+            description_.problems.push_back(problem);
+    }
+
+    std::set<std::pair<int, int>> falls_off;  // closing braces of functions that may return nothing
+    bool has_errors = false;
+
+private:
+    const std::map<std::string, std::string>& own_names_;
+    Description& description_;
+};
+
+// The tokens that are left when the preprocessor is done.
+class TokenList {
+public:
+    TokenList(const std::map<std::string, std::string>& own_names, Description& description)
+        : description_(description)
+    {
+        for (const auto& [name, other] : own_names) real_names_[other] = name;
+    }
+
+    void collect(const clang::Preprocessor& preprocessor, const clang::Token& token)
+    {
+        const clang::SourceManager& sources = preprocessor.getSourceManager();
+        const clang::SourceLocation at = token.getLocation();
+        if (token.isAnnotation() || token.is(clang::tok::eof) || at.isInvalid()) return;
+        const clang::SourceLocation start = sources.getExpansionLoc(at);
+        if (!sources.isInMainFile(start)) return;
+        if (description_.tokens.size() >= most_tokens)
+            give_up("macros expand to more than a million tokens; use functions and loops");
+        Token plain;
+        plain.offset = static_cast<int>(sources.getFileOffset(start));
+        plain.line = static_cast<int>(sources.getSpellingLineNumber(start));
+        plain.column = static_cast<int>(sources.getSpellingColumnNumber(start));
+        plain.is_from_macro = at.isMacroID();
+        plain.text = preprocessor.getSpelling(token);
+        if (const auto real = real_names_.find(plain.text); real != real_names_.end())
+            plain.text = real->second;
+        if (plain.is_from_macro) {
+            const clang::SourceLocation last = sources.getExpansionRange(at).getEnd();
+            plain.end = static_cast<int>(
+                sources.getFileOffset(last) +
+                clang::Lexer::MeasureTokenLength(last, sources, preprocessor.getLangOpts()));
+        } else {
+            plain.end = plain.offset + static_cast<int>(token.getLength());
+        }
+        numbers[at.getRawEncoding()] = static_cast<int>(description_.tokens.size());
+        description_.tokens.push_back(plain);
+    }
+
+    std::map<unsigned, int> numbers;
+
+private:
+    Description& description_;
+    std::map<std::string, std::string> real_names_;
+};
+
+class Consumer : public clang::ASTConsumer {
+public:
+    Consumer(TokenList& tokens, const std::map<std::string, std::string>& own_names,
+             Diagnostics& diagnostics, Description& description)
+        : tokens_(tokens), own_names_(own_names), diagnostics_(diagnostics),
+          description_(description)
+    {
+    }
+
+    void HandleTranslationUnit(clang::ASTContext& context) override
+    {
+        if (diagnostics_.has_errors) return;
+        Walk(context, tokens_.numbers, own_names_, description_).run();
+    }
+
+private:
+    TokenList& tokens_;
+    const std::map<std::string, std::string>& own_names_;
+    Diagnostics& diagnostics_;
+    Description& description_;
+};
+
+class Action : public clang::ASTFrontendAction {
+public:
+    Action(TokenList& tokens, const std::map<std::string, std::string>& own_names,
+           Diagnostics& diagnostics, Description& description)
+        : tokens_(tokens), own_names_(own_names), diagnostics_(diagnostics),
+          description_(description)
+    {
+    }
+
+    std::unique_ptr<clang::ASTConsumer> CreateASTConsumer(clang::CompilerInstance& compiler,
+                                                          llvm::StringRef) override
+    {
+        clang::Preprocessor& preprocessor = compiler.getPreprocessor();
+        preprocessor.setTokenWatcher(
+            [&](const clang::Token& token) { tokens_.collect(preprocessor, token); });
+        return std::make_unique<Consumer>(tokens_, own_names_, diagnostics_, description_);
+    }
+
+private:
+    TokenList& tokens_;
+    const std::map<std::string, std::string>& own_names_;
+    Diagnostics& diagnostics_;
+    Description& description_;
+};
+
+void note_missing_returns(const Diagnostics& diagnostics, Description& description)
+{
+    for (Function& function : description.functions) {
+        if (function.body_end < 0) continue;
+        const Token& brace = description.tokens[function.body_end];
+        if (!diagnostics.falls_off.count({brace.line, brace.column})) continue;
+        function.returns_always = false;
+        description.problems.push_back({brace.line, brace.column, false,
+                                        "'" + function.name +
+                                            "' may end without a return and then "
+                                            "gives 0; add a return at its end"});
+    }
+}
+
+}  // namespace
+
+Description find(const std::string& name, const std::string& source)
+{
+    Description description;
+    description.file = name;
+    description.source = source;
+    if (source.size() > (1u << 20)) {
+        description.problems.push_back({1, 1, true,
+                                        "the file is larger than 1 MiB; give large tables as "
+                                        "array arguments"});
+        return description;
+    }
+    if (const size_t zero = source.find('\0'); zero != std::string::npos) {
+        const int line = 1 + static_cast<int>(std::count(
+                                 source.begin(), source.begin() + static_cast<long>(zero), '\n'));
+        description.problems.push_back(
+            {line, 1, true, "the file holds a zero byte; it is no text"});
+        return description;
+    }
+    std::string parsed = source;
+    const std::vector<Word> words = scan_words(source);
+    check_words(words, description.problems);
+    const std::map<std::string, std::string> own_names = rename_own(words, parsed);
+
+    llvm::IntrusiveRefCntPtr<llvm::vfs::InMemoryFileSystem> files(
+        new llvm::vfs::InMemoryFileSystem);
+    files->addFile(parsed_name, 0, llvm::MemoryBuffer::getMemBufferCopy(parsed));
+    files->addFile("/prelude.h", 0, llvm::MemoryBuffer::getMemBufferCopy(prelude()));
+    const llvm::IntrusiveRefCntPtr<clang::FileManager> manager(
+        new clang::FileManager(clang::FileSystemOptions(), files));
+    const std::vector<std::string> command = {"clang",
+                                              "-x",
+                                              "cl",
+                                              "-cl-std=CL2.0",
+                                              "-target",
+                                              "spir64",
+                                              "-cl-single-precision-constant",
+                                              "-cl-no-stdinc",
+                                              "-nostdinc",
+                                              "-Xclang",
+                                              "-fdeclare-opencl-builtins",
+                                              "-fno-trigraphs",
+                                              "-ffp-contract=off",
+                                              "-fsyntax-only",
+                                              "-Wno-everything",
+                                              "-Wreturn-type",
+                                              "-Wno-error=return-type",
+                                              "-ferror-limit=20",
+                                              "-include",
+                                              "/prelude.h",
+                                              parsed_name};
+    Diagnostics diagnostics(own_names, description);
+    TokenList tokens(own_names, description);
+    clang::tooling::ToolInvocation invocation(
+        command, std::make_unique<Action>(tokens, own_names, diagnostics, description),
+        manager.get());
+    invocation.setDiagnosticConsumer(&diagnostics);
+    invocation.run();
+    note_missing_returns(diagnostics, description);
+    return description;
+}
+
+}  // namespace texture_tool

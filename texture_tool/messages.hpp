@@ -1,0 +1,10 @@
+// Clang's messages with a remedy.
+#pragma once
+
+#include <string>
+
+namespace texture_tool {
+
+std::string with_remedy(const std::string& message);
+
+}  // namespace texture_tool

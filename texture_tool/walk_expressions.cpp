@@ -1,0 +1,725 @@
+// The walk over expressions; children are walked before their parent's site is recorded, so that
+// rewriting goes from the inside out.
+#include "texture_tool/walk.hpp"
+
+#include "texture_tool/language.hpp"
+
+namespace texture_tool {
+
+using namespace clang;
+
+namespace {
+
+const char* arithmetic_name(BinaryOperatorKind kind)
+{
+    switch (kind) {
+    case BO_Mul:
+    case BO_MulAssign:
+        return "multiply";
+    case BO_Div:
+    case BO_DivAssign:
+        return "divide";
+    case BO_Rem:
+    case BO_RemAssign:
+        return "modulo";
+    case BO_Add:
+    case BO_AddAssign:
+        return "add";
+    case BO_Sub:
+    case BO_SubAssign:
+        return "subtract";
+    case BO_Shl:
+    case BO_ShlAssign:
+        return "shift_left";
+    case BO_Shr:
+    case BO_ShrAssign:
+        return "shift_right";
+    default:
+        return "";
+    }
+}
+
+const ExtVectorElementExpr* as_swizzle(const Expr* node)
+{
+    const auto* swizzle = dyn_cast<ExtVectorElementExpr>(node->IgnoreParens());
+    return swizzle;
+}
+
+}  // namespace
+
+bool Walk::is_constant(const Expr* node) const
+{
+    Expr::EvalResult result;
+    return !node->isValueDependent() && node->EvaluateAsRValue(result, context_) &&
+           !result.HasSideEffects;
+}
+
+Interval Walk::interval_of(const Expr* node) const
+{
+    const Expr* plain = node->IgnoreParens();
+    const QualType type = plain->getType();
+    Interval full;
+    if (type->isIntegerType() && !type->isExtVectorType()) {
+        const unsigned bits = static_cast<unsigned>(context_.getTypeSize(type));
+        if (bits <= 32) {
+            const long range = 1L << bits;
+            full = type->isSignedIntegerOrEnumerationType() ? Interval{-range / 2, range / 2 - 1}
+                                                            : Interval{0, range - 1};
+        }
+    }
+    Expr::EvalResult result;
+    if (plain->getType()->isIntegerType() && plain->EvaluateAsInt(result, context_)) {
+        const long value = static_cast<long>(result.Val.getInt().getExtValue());
+        return {value, value};
+    }
+    if (const auto* cast = dyn_cast<ImplicitCastExpr>(plain)) {
+        if (cast->getCastKind() == CK_LValueToRValue || cast->getCastKind() == CK_IntegralCast ||
+            cast->getCastKind() == CK_NoOp) {
+            const Interval inner = interval_of(cast->getSubExpr());
+            return inner.is_within(full.low, full.high) ? inner : full;
+        }
+        return full;
+    }
+    if (const auto* reference = dyn_cast<DeclRefExpr>(plain)) {
+        const auto known = counters_.find(dyn_cast<VarDecl>(reference->getDecl()));
+        return known == counters_.end() ? full : known->second;
+    }
+    const auto* binary = dyn_cast<BinaryOperator>(plain);
+    if (!binary || !type->isIntegerType()) return full;
+    if (binary->isComparisonOp() || binary->isLogicalOp()) return {0, 1};
+    const Interval a = interval_of(binary->getLHS());
+    const Interval b = interval_of(binary->getRHS());
+    Interval both = full;
+    if (binary->getOpcode() == BO_Add) both = texture_tool::add(a, b);
+    if (binary->getOpcode() == BO_Sub) both = subtract(a, b);
+    if (binary->getOpcode() == BO_Mul) both = multiply(a, b);
+    if (binary->getOpcode() == BO_And) {
+        if (b.low >= 0)
+            both = {0, a.low >= 0 ? std::min(a.high, b.high) : b.high};
+        else if (a.low >= 0)
+            both = {0, a.high};
+    }
+    if (binary->getOpcode() == BO_Rem && b.low > 0)
+        both = {a.low >= 0 ? 0 : 1 - b.high, b.high - 1};
+    if (binary->getOpcode() == BO_Shr && b.low == b.high && b.low >= 0 && b.low < 32)
+        both = {a.low >> b.low, a.high >> b.low};
+    return both.is_within(full.low, full.high) ? both : full;
+}
+
+bool Walk::has_side_effects(const Expr* node) const { return node->HasSideEffects(context_); }
+
+const Parameter* Walk::parameter_named(const Expr* node) const
+{
+    const auto* reference = dyn_cast<DeclRefExpr>(node->IgnoreParenImpCasts());
+    const auto* declaration = reference ? dyn_cast<ParmVarDecl>(reference->getDecl()) : nullptr;
+    const auto found = parameter_numbers_.find(declaration);
+    if (!declaration || found == parameter_numbers_.end()) return nullptr;
+    return &description_.functions[found->second.first].parameters[found->second.second];
+}
+
+void Walk::expression(const Expr* node)
+{
+    if (const auto* value = dyn_cast<DeclRefExpr>(node)) return reference(value);
+    if (const auto* value = dyn_cast<CallExpr>(node)) return call(value);
+    if (const auto* value = dyn_cast<ImplicitCastExpr>(node)) return implicit_cast(value);
+    if (const auto* value = dyn_cast<CStyleCastExpr>(node)) return explicit_cast(value);
+    if (const auto* value = dyn_cast<BinaryOperator>(node))
+        return value->isAssignmentOp() ? assignment(value) : binary(value);
+    if (const auto* value = dyn_cast<UnaryOperator>(node)) return unary(value);
+    if (const auto* value = dyn_cast<ArraySubscriptExpr>(node)) return subscript(value);
+    if (const auto* value = dyn_cast<ExtVectorElementExpr>(node)) return swizzle(value);
+    if (const auto* value = dyn_cast<ConditionalOperator>(node)) return choice(value);
+    if (const auto* value = dyn_cast<InitListExpr>(node)) return initialiser_list(value);
+    if (const auto* value = dyn_cast<MemberExpr>(node)) return member(value);
+    if (isa<ParenExpr>(node) || isa<ConstantExpr>(node)) {
+        if (statement_expressions_.count(node))
+            for (const Stmt* child : node->children()) statement_expressions_.insert(child);
+        return children(node);
+    }
+    if (isa<IntegerLiteral>(node) || isa<CharacterLiteral>(node) ||
+        isa<ImplicitValueInitExpr>(node))
+        return;
+    if (const auto* literal = dyn_cast<FloatingLiteral>(node)) {
+        const int token = token_at(literal->getBeginLoc());
+        if (spelled_type(literal->getType()) != "float" &&
+            (token < 0 || tolower(description_.tokens[token].text.back()) == 'l' ||
+             tolower(description_.tokens[token].text.back()) == 'h'))
+            complain(literal->getBeginLoc(), "this number is not a float; end it with f");
+        Site& site = add(SiteKind::FloatLiteral);
+        site.token = token;
+        return;
+    }
+    if (const auto* size = dyn_cast<UnaryExprOrTypeTraitExpr>(node)) {
+        Expr::EvalResult result;
+        if (size->getKind() != UETT_SizeOf || !size->EvaluateAsInt(result, context_))
+            return complain(node->getBeginLoc(), "only sizeof is part of the language");
+        if (!size->isArgumentType() && parameter_named(size->getArgumentExpr()) &&
+            parameter_named(size->getArgumentExpr())->passing != Passing::Value)
+            complain(node->getBeginLoc(),
+                     "sizeof of an array parameter is the size of a pointer; pass "
+                     "the length as another parameter");
+        Site& site = add(SiteKind::Replace);
+        site.range = range_of(node);
+        site.text = std::to_string(result.Val.getInt().getZExtValue()) + "ul";
+        return;
+    }
+    if (const auto* literal = dyn_cast<CompoundLiteralExpr>(node)) {
+        types_in(literal->getTypeSourceInfo());
+        if (literal->getType()->isArrayType())
+            return complain(node->getBeginLoc(), "an array without a name; declare a local array");
+        const auto* list = dyn_cast<InitListExpr>(literal->getInitializer());
+        const int brace = list ? token_at(list->getLBraceLoc()) : -1;
+        if (list && brace >= 0 && description_.tokens[brace].text == "(")
+            for (const Expr* value : list->inits()) expression(value);
+        else
+            expression(literal->getInitializer());
+        Site& site = add(SiteKind::CompoundLiteral);
+        site.token = token_at(literal->getLParenLoc());
+        site.token2 = matching_close(site.token);
+        return;
+    }
+    if (isa<StringLiteral>(node))
+        return complain(node->getBeginLoc(),
+                        "text is only for the names in readAttr, readSetting and "
+                        "readOcclusion; use numbers");
+    if (isa<StmtExpr>(node) || isa<BinaryConditionalOperator>(node) || isa<AddrLabelExpr>(node))
+        return complain(node->getBeginLoc(),
+                        "this is an extension of some compilers; write it in C99");
+    complain(node->getBeginLoc(),
+             "this expression is not part of the language; write it in C99 with "
+             "OpenCL's vectors");
+}
+
+void Walk::reference(const DeclRefExpr* node)
+{
+    const ValueDecl* target = node->getDecl();
+    const std::string name = target->getName().str();
+    if (isa<FunctionDecl>(target) && !handled_.count(node))
+        return complain(node->getBeginLoc(),
+                        "'" + own_name(name) +
+                            "' is a function and not called here; functions are "
+                            "not values");
+    if (!is_users(target)) return;
+    const auto* variable = dyn_cast<VarDecl>(target);
+    const bool is_static_table = variable && variable->isStaticLocal();
+    const bool is_global = target->getDeclContext()->isTranslationUnit();
+    if (is_static_table) {
+        Site& site = add(SiteKind::Name);
+        site.token = token_at(node->getLocation());
+        site.text = own_name(name);
+        site.number = 2;  // hoisted in OpenCL
+        site.range.first = token_at(variable->getLocation());
+    } else {
+        rename(token_at(node->getLocation()), name, is_global);
+    }
+    if (handled_.count(node)) return;
+    const Parameter* parameter = parameter_named(node);
+    if (parameter && parameter->passing != Passing::Value)
+        complain(node->getBeginLoc(),
+                 parameter->passing == Passing::Engine
+                     ? "'" + parameter->name + "' only goes to readAttr and to functions"
+                     : "'" + parameter->name + "' is used as a pointer; write " + parameter->name +
+                           "[i], *" + parameter->name + " or pass it on");
+    else if (node->getType()->isArrayType())
+        complain(node->getBeginLoc(), "the array '" + name +
+                                          "' is used as a pointer; index it or pass "
+                                          "it to a function");
+}
+
+void Walk::member(const MemberExpr* node)
+{
+    const Expr* base = node->getBase();
+    const auto* field = dyn_cast<FieldDecl>(node->getMemberDecl());
+    if (spelled_type(node->isArrow() ? base->getType()->getPointeeType() : base->getType()) ==
+        "sam2D")
+        return complain(node->getMemberLoc(), "an image has no fields; read it with tex2D");
+    if (node->isArrow()) {
+        const Parameter* parameter = parameter_named(base);
+        if (!parameter || parameter->passing == Passing::Engine)
+            return complain(node->getBeginLoc(), "-> is for output parameters only; use a dot");
+        handled_.insert(base->IgnoreParenImpCasts());
+    }
+    expression(base);
+    if (field && is_users(field))
+        rename(token_at(node->getMemberLoc()), field->getName().str(), false);
+    if (node->getType()->isArrayType() && !handled_.count(node))
+        complain(node->getMemberLoc(), "this array is used as a pointer; index it or pass it to a "
+                                       "function");
+}
+
+// The function that gives `left kind right` one result, or "" where C's operator already does.
+std::string Walk::arithmetic_function(BinaryOperatorKind kind, QualType type, const Expr* left,
+                                      const Expr* right, QualType count, bool& only_opencl) const
+{
+    const std::string spelled = spelled_type(type);
+    const bool is_int = spelled.rfind("int", 0) == 0;
+    const bool is_uint = spelled.rfind("uint", 0) == 0;
+    if (in_constant_ || *arithmetic_name(kind) == '\0') return "";
+    const bool is_scalar = !type->isExtVectorType();
+    const Interval b = interval_of(right->IgnoreParenImpCasts()->getType()->isExtVectorType()
+                                       ? right
+                                       : right->IgnoreImpCasts());
+    const Interval a = left ? interval_of(left) : Interval();
+    only_opencl = false;
+    switch (kind) {
+    case BO_Div:
+    case BO_DivAssign:
+    case BO_Rem:
+    case BO_RemAssign:
+        if (!type->hasIntegerRepresentation()) return "";
+        if (b.low > 0 || b.high < -1) return "";
+        break;
+    case BO_Shl:
+    case BO_ShlAssign:
+    case BO_Shr:
+    case BO_ShrAssign:
+        if (b.is_within(0, 31)) return "";
+        break;
+    default:
+        if (!is_int) return "";
+        only_opencl = true;
+        if (is_scalar && (kind == BO_Add || kind == BO_AddAssign) &&
+            texture_tool::add(a, b).is_within(-2147483648L, 2147483647L))
+            return "";
+        if (is_scalar && (kind == BO_Sub || kind == BO_SubAssign) &&
+            subtract(a, b).is_within(-2147483648L, 2147483647L))
+            return "";
+        if (is_scalar && (kind == BO_Mul || kind == BO_MulAssign) &&
+            multiply(a, b).is_within(-2147483648L, 2147483647L))
+            return "";
+    }
+    if (!is_int && !is_uint) return "?";
+    (void)count;
+    return std::string("tx_") + arithmetic_name(kind) + "_" + spelled;
+}
+
+void Walk::binary(const BinaryOperator* node)
+{
+    const BinaryOperatorKind kind = node->getOpcode();
+    if (kind == BO_Comma) {
+        statement_expressions_.insert(node->getLHS());
+        if (statement_expressions_.count(node)) statement_expressions_.insert(node->getRHS());
+    }
+    for (const Expr* side : {node->getLHS(), node->getRHS()})
+        if (side->getType()->isAnyPointerType())
+            return complain(node->getOperatorLoc(),
+                            "arithmetic with pointers and arrays; use an index: "
+                            "name[i]");
+    expression(node->getLHS());
+    expression(node->getRHS());
+    bool only_opencl = false;
+    const std::string function =
+        arithmetic_function(kind, node->getType(), node->getLHS(), node->getRHS(), {}, only_opencl);
+    if (function.empty()) return;
+    if (function == "?") {
+        complain(node->getOperatorLoc(),
+                 "this operator may divide by zero or shift too far in a type "
+                 "that is not int or uint; convert the operands to int");
+        return;
+    }
+    if (is_constant(node)) {
+        Expr::EvalResult right;
+        if ((kind == BO_Div || kind == BO_Rem) && false) return;
+        return;
+    }
+    Expr::EvalResult divisor;
+    if ((kind == BO_Div || kind == BO_Rem) && node->getRHS()->EvaluateAsInt(divisor, context_) &&
+        divisor.Val.getInt() == 0)
+        complain(node->getOperatorLoc(),
+                 "division by zero gives 0 (x % 0 gives x) on every device; "
+                 "remove it or test the divisor",
+                 false);
+    Site& site = add(SiteKind::Binary);
+    site.range = range_of(node->getLHS());
+    site.range2 = range_of(node->getRHS());
+    site.token = token_at(node->getOperatorLoc());
+    site.text = function;
+    site.only_opencl = only_opencl;
+}
+
+void Walk::assignment(const BinaryOperator* node)
+{
+    const BinaryOperatorKind kind = node->getOpcode();
+    const Expr* left = node->getLHS();
+    if (const ExtVectorElementExpr* swizzle = as_swizzle(left))
+        if (swizzle->getNumElements() > 1) return swizzle_write(swizzle, node);
+    if (const Parameter* parameter = parameter_named(left))
+        if (parameter->passing != Passing::Value)
+            return complain(node->getOperatorLoc(), "'" + parameter->name +
+                                                        "' is assigned another "
+                                                        "array; assign to *" +
+                                                        parameter->name + " or to its elements");
+    expression(left);
+    expression(node->getRHS());
+    const auto* compound = dyn_cast<CompoundAssignOperator>(node);
+    if (!compound) return;
+    bool only_opencl = false;
+    std::string function = arithmetic_function(kind, compound->getComputationResultType(), nullptr,
+                                               node->getRHS(), {}, only_opencl);
+    std::string conversion;
+    if (left->getType()->isIntegerType() &&
+        compound->getComputationResultType()->isRealFloatingType())
+        conversion = "tx_convert_" +
+                     std::string(left->getType()->isUnsignedIntegerType() ? "uint" : "int") +
+                     "_float";
+    if (bounded_steps_.count(node)) return;
+    if (function == "?")
+        return complain(node->getOperatorLoc(),
+                        "this operator may divide by zero or shift too far in a "
+                        "type that is not int or uint; use int");
+    if (function.empty() && conversion.empty()) return;
+    if (has_side_effects(left))
+        return complain(node->getOperatorLoc(),
+                        "the left side is computed twice and changes something; "
+                        "change it in a statement of its own");
+    Site& site = add(SiteKind::CompoundBinary);
+    site.range = range_of(left);
+    site.range2 = range_of(node->getRHS());
+    site.token = token_at(node->getOperatorLoc());
+    site.text = function;
+    site.other = conversion;
+    site.only_opencl = only_opencl && conversion.empty();
+    site.number = statement_expressions_.count(node) ? 0 : 1;
+}
+
+void Walk::unary(const UnaryOperator* node)
+{
+    const Expr* operand = node->getSubExpr();
+    switch (node->getOpcode()) {
+    case UO_AddrOf:
+        expression(operand);
+        if (!handled_.count(node))
+            complain(node->getOperatorLoc(), "the address is only taken of a local variable, as an "
+                                             "argument for an output parameter");
+        return;
+    case UO_Deref: {
+        const Parameter* parameter = parameter_named(operand);
+        if (!parameter || parameter->passing == Passing::Engine ||
+            parameter->passing == Passing::Value)
+            return complain(node->getOperatorLoc(),
+                            "* is for output parameters only; textures have "
+                            "no other pointers");
+        const bool is_view = parameter->passing == Passing::View;
+        const std::string type = parameter->type;
+        handled_.insert(operand->IgnoreParenImpCasts());
+        expression(operand);
+        if (!is_view) return;
+        Site& site = add(SiteKind::ViewFirst);
+        site.token = token_at(node->getOperatorLoc());
+        site.range = range_of(operand);
+        site.text = type;
+        return;
+    }
+    case UO_PreInc:
+    case UO_PreDec:
+    case UO_PostInc:
+    case UO_PostDec: {
+        if (as_swizzle(operand) && as_swizzle(operand)->getNumElements() > 1)
+            return complain(node->getOperatorLoc(), "several components are stepped at once; write "
+                                                    "v.xy += 1");
+        if (const Parameter* parameter = parameter_named(operand))
+            if (parameter->passing != Passing::Value)
+                return complain(node->getOperatorLoc(),
+                                "arithmetic with pointers and arrays; use an "
+                                "index: name[i]");
+        expression(operand);
+        const std::string type = spelled_type(operand->getType());
+        if (operand->getType()->isEnumeralType())
+            return complain(node->getOperatorLoc(), "an enum is stepped; use an int");
+        if (type.rfind("int", 0) != 0 || bounded_steps_.count(node)) return;
+        if (has_side_effects(operand))
+            return complain(node->getOperatorLoc(),
+                            "the operand is computed twice and changes "
+                            "something; change it in a statement of its own");
+        Site& site = add(SiteKind::Step);
+        site.token = token_at(node->getOperatorLoc());
+        site.range = range_of(operand);
+        site.text = type;
+        site.other = node->isIncrementOp() ? "add" : "subtract";
+        site.number = statement_expressions_.count(node) ? 2 : (node->isPostfix() ? 1 : 0);
+        site.only_opencl = true;
+        return;
+    }
+    case UO_Minus: {
+        expression(operand);
+        const std::string type = spelled_type(node->getType());
+        if (type.rfind("int", 0) != 0 || is_constant(node) ||
+            interval_of(operand).low > -2147483648L)
+            return;
+        Site& site = add(SiteKind::Negate);
+        site.token = token_at(node->getOperatorLoc());
+        site.range = range_of(operand);
+        site.text = "tx_negate_" + type;
+        site.only_opencl = true;
+        return;
+    }
+    case UO_Plus:
+    case UO_Not:
+    case UO_LNot:
+        return expression(operand);
+    case UO_Extension:
+        return expression(operand);
+    default:
+        complain(node->getOperatorLoc(),
+                 "this operator is an extension of some compilers; write it "
+                 "in C99");
+    }
+}
+
+void Walk::implicit_cast(const ImplicitCastExpr* node)
+{
+    const Expr* operand = node->getSubExpr();
+    if (node->getCastKind() == CK_LValueToRValue || node->getCastKind() == CK_NoOp ||
+        node->getCastKind() == CK_ArrayToPointerDecay ||
+        node->getCastKind() == CK_AddressSpaceConversion)
+        if (handled_.count(node)) handled_.insert(operand->IgnoreParenImpCasts());
+    if (statement_expressions_.count(node)) statement_expressions_.insert(operand);
+    if (node->getCastKind() == CK_FloatingToIntegral) return conversion(node, operand, -1);
+    expression(operand);
+    if (node->getCastKind() == CK_IntegralCast && node->getType()->isEnumeralType() &&
+        !operand->getType()->isEnumeralType()) {
+        Site& site = add(SiteKind::EnumCast);
+        site.range = range_of(operand);
+        site.text = own_name(node->getType().getUnqualifiedType().getAsString());
+    }
+}
+
+void Walk::explicit_cast(const CStyleCastExpr* node)
+{
+    const Expr* operand = node->getSubExpr();
+    types_in(node->getTypeInfoAsWritten());
+    if (node->getType()->isAnyPointerType() || operand->getType()->isAnyPointerType())
+        return complain(node->getBeginLoc(),
+                        "a cast to or from a pointer; use as_uint and as_float for "
+                        "the bits of a number");
+    type_allowed(node->getType(), node->getBeginLoc(), "this cast");
+    const int open = token_at(node->getLParenLoc());
+    if (node->getCastKind() == CK_FloatingToIntegral) return conversion(node, operand, open);
+    if (const auto* list = dyn_cast<InitListExpr>(operand->IgnoreImplicit())) {
+        for (const Expr* value : list->inits()) expression(value);
+        Site& site = add(SiteKind::VectorLiteral);
+        site.token = open;
+        site.token2 = matching_close(open);
+        return;
+    }
+    if (statement_expressions_.count(node)) statement_expressions_.insert(operand);
+    if (node->getCastKind() == CK_ToVoid) statement_expressions_.insert(operand);
+    expression(operand);
+}
+
+// Of a float to an integer, which must not depend on the device.
+void Walk::conversion(const Expr* node, const Expr* operand, int open)
+{
+    expression(operand);
+    Expr::EvalResult result;
+    if (node->EvaluateAsInt(result, context_) || in_constant_) return;
+    const QualType type = node->getType();
+    const bool is_wide_uint = type->isUnsignedIntegerType() && context_.getTypeSize(type) >= 32;
+    Site& site = add(SiteKind::Convert);
+    site.range = range_of(operand);
+    site.token = open;
+    site.text = is_wide_uint ? "tx_convert_uint_float" : "tx_convert_int_float";
+    const std::string spelled = spelled_type(type);
+    site.other = spelled == "int" || spelled == "uint" ? "" : spelled;
+}
+
+void Walk::subscript(const ArraySubscriptExpr* node)
+{
+    const Expr* base = node->getBase();
+    const Expr* index = node->getIdx();
+    if (base != node->getLHS())
+        return complain(node->getBeginLoc(),
+                        "the array stands inside the brackets; write array[index]");
+    const Parameter* parameter = parameter_named(base);
+    const Interval range = interval_of(index);
+    const int close = token_at(node->getRBracketLoc());
+    int open = close;
+    for (int depth = 0; open >= 0; --open) {
+        const std::string& text = description_.tokens[open].text;
+        depth += text == "]" ? 1 : (text == "[" ? -1 : 0);
+        if (depth == 0) break;
+    }
+    long length = -1;
+    std::string view;
+    const Expr* array = base->IgnoreParenImpCasts();
+    if (base->getType()->isExtVectorType() || array->getType()->isExtVectorType()) {
+        if (!array->isLValue())
+            return complain(node->getBeginLoc(),
+                            "only a variable's component can be chosen by an index; "
+                            "store the vector in a variable first");
+        length = array->getType()->castAs<ExtVectorType>()->getNumElements();
+        expression(base);
+        expression(index);
+        Site& site = add(SiteKind::Index);
+        site.range = range_of(base);
+        site.token = open;
+        site.token2 = close;
+        site.number = length;
+        site.text = spelled_type(array->getType()->castAs<ExtVectorType>()->getElementType());
+        return;
+    }
+    if (parameter) {
+        if (parameter->passing == Passing::View)
+            view = parameter->type;
+        else if (parameter->passing == Passing::Array)
+            length = *parameter->length;
+        else
+            return complain(node->getBeginLoc(),
+                            "the length of '" + parameter->name + "' is not known; declare it as " +
+                                parameter->name + "[N], or const where it is only read");
+        if (parameter->length && range.low == range.high &&
+            (range.low < 0 || range.low >= *parameter->length))
+            complain(index->getExprLoc(),
+                     "index " + std::to_string(range.low) + " is outside of '" + parameter->name +
+                         "', which has " + std::to_string(*parameter->length) +
+                         " elements; it reads the nearest one",
+                     false);
+        handled_.insert(array);
+    } else if (const auto* type = context_.getAsConstantArrayType(array->getType())) {
+        length = static_cast<long>(type->getSize().getZExtValue());
+        if (range.high < 0 || range.low >= length)
+            complain(
+                index->getExprLoc(),
+                (range.low == range.high ? "index " + std::to_string(range.low) : "the index") +
+                    " is outside of an array of " + std::to_string(length) +
+                    " elements; use 0 to " + std::to_string(length - 1));
+        handled_.insert(array);
+    } else {
+        return complain(node->getBeginLoc(),
+                        "only arrays are indexed; textures have no other pointers");
+    }
+    expression(base);
+    expression(index);
+    if (view.empty() && range.is_within(0, length - 1)) return;
+    Site& site = add(view.empty() ? SiteKind::Index : SiteKind::ViewIndex);
+    site.range = range_of(base);
+    site.token = open;
+    site.token2 = close;
+    site.number = length;
+    site.text = view;
+}
+
+void Walk::fill_swizzle(const ExtVectorElementExpr* node, Site& site) const
+{
+    llvm::SmallVector<uint32_t, 16> elements;
+    node->getEncodedElementAccess(elements);
+    site.range = range_of(node->getBase());
+    site.token2 = token_at(node->getAccessorLoc());
+    site.token = site.token2 - 1;
+    site.indices.assign(elements.begin(), elements.end());
+    site.number = node->getBase()->getType()->castAs<ExtVectorType>()->getNumElements();
+}
+
+void Walk::swizzle(const ExtVectorElementExpr* node)
+{
+    if (node->isArrow() || !node->getBase()->getType()->isExtVectorType()) {
+        const Parameter* parameter = parameter_named(node->getBase());
+        if (node->isArrow() && parameter && parameter->passing == Passing::Pointer) {
+            handled_.insert(node->getBase()->IgnoreParenImpCasts());
+            expression(node->getBase());
+            if (node->getNumElements() > 1)
+                complain(node->getAccessorLoc(),
+                         "several components through ->; write (*" + parameter->name + ").xyz");
+            return;
+        }
+        return complain(node->getBeginLoc(), "-> is for output parameters only; use a dot");
+    }
+    expression(node->getBase());
+    Site site{SiteKind::Swizzle};
+    fill_swizzle(node, site);
+    description_.sites.push_back(site);
+}
+
+void Walk::swizzle_write(const ExtVectorElementExpr* node, const BinaryOperator* write)
+{
+    expression(node->getBase());
+    expression(write->getRHS());
+    if (node->isArrow())
+        return complain(node->getAccessorLoc(),
+                        "several components through ->; write (*p).xy = ...");
+    if (node->containsDuplicateElements())
+        return complain(node->getAccessorLoc(), "a component is written twice; name each once");
+    if (isa<ExtVectorElementExpr>(node->getBase()->IgnoreParens()))
+        return complain(node->getAccessorLoc(), "components of components are written; name the "
+                                                "vector's own components");
+    const auto* compound = dyn_cast<CompoundAssignOperator>(write);
+    bool only_opencl = false;
+    const std::string function =
+        compound ? arithmetic_function(write->getOpcode(), node->getType(), nullptr,
+                                       write->getRHS(), {}, only_opencl)
+                 : "";
+    if (!function.empty() && !only_opencl)
+        return complain(write->getOperatorLoc(),
+                        "write the components' new values with =: this operator "
+                        "may divide by zero or shift too far");
+    if (has_side_effects(node->getBase()) && compound)
+        return complain(write->getOperatorLoc(),
+                        "the left side is computed twice and changes something; "
+                        "change it in a statement of its own");
+    Site site{SiteKind::SwizzleWrite};
+    fill_swizzle(node, site);
+    site.range2 = range_of(write->getRHS());
+    site.range3 = range_of(node);
+    const int operation = token_at(write->getOperatorLoc());
+    const std::string text = description_.tokens[operation].text;
+    site.text = compound ? text.substr(0, text.size() - 1) : "";
+    site.other = std::to_string(operation);
+    description_.sites.push_back(site);
+}
+
+void Walk::choice(const ConditionalOperator* node)
+{
+    for (const Expr* side : {node->getTrueExpr(), node->getFalseExpr()})
+        if (side->getType()->isAnyPointerType())
+            return complain(node->getBeginLoc(),
+                            "arrays are chosen by ?:; choose the elements instead");
+    if (statement_expressions_.count(node))
+        for (const Expr* side : {node->getTrueExpr(), node->getFalseExpr()})
+            statement_expressions_.insert(side);
+    expression(node->getCond());
+    expression(node->getTrueExpr());
+    expression(node->getFalseExpr());
+    const QualType type = node->getType();
+    const bool has_vector_condition = node->getCond()->getType()->isExtVectorType();
+    if (!has_vector_condition && !type->isExtVectorType()) return;
+    Site& site = add(SiteKind::VectorChoice);
+    site.range = range_of(node->getCond());
+    site.range2 = range_of(node->getTrueExpr());
+    site.range3 = range_of(node->getFalseExpr());
+    site.token = token_at(node->getQuestionLoc());
+    site.token2 = token_at(node->getColonLoc());
+    site.text = spelled_type(type);
+    site.other = has_vector_condition ? "vector" : "";
+    site.number = type->isExtVectorType() ? type->castAs<ExtVectorType>()->getNumElements() : 1;
+}
+
+void Walk::initialiser_list(const InitListExpr* node)
+{
+    if (const InitListExpr* written = node->isSemanticForm() ? node->getSyntacticForm() : node)
+        for (const Expr* value : written->inits())
+            if (const auto* designated = dyn_cast<DesignatedInitExpr>(value)) {
+                const bool is_plain =
+                    designated->size() == 1 && designated->getDesignator(0)->isFieldDesignator();
+                complain(designated->getBeginLoc(),
+                         is_plain
+                             ? "initialisers by name are not C++'s where their order differs; list "
+                               "the values in the order of the fields"
+                             : "initialisers by index are not C++; list the values in order");
+                return;
+            }
+    const bool is_implicit = token_at(node->getLBraceLoc()) < 0 ||
+                             description_.tokens[token_at(node->getLBraceLoc())].text != "{";
+    Range range;
+    for (const Expr* value : node->inits()) {
+        expression(value);
+        if (isa<ImplicitValueInitExpr>(value)) continue;
+        const Range one = range_of(value);
+        if (range.last < 0) range.first = one.first;
+        range.last = std::max(range.last, one.last);
+    }
+    if (!is_implicit || range.last < 0) return;
+    Site& site = add(SiteKind::ImplicitList);
+    site.range = range;
+}
+
+}  // namespace texture_tool
