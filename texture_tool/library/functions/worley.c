@@ -88,6 +88,7 @@ float2 worley3(float3 p, float jitter)
 }
 
 // Length of a difference; metric 0: Euclid's, 1: sum of the differences, 2: the largest of them.
+// (Weights, since a choice on what all paths share keeps loops over paths from vectorising.)
 float worley_distance(float3 v, int metric)
 {
     const float a = fabs(v.x);
@@ -96,7 +97,9 @@ float worley_distance(float3 v, int metric)
     const float larger = a > b ? a : b;
     const float largest = larger > c ? larger : c;
     const float euclid = sqrt(a * a + b * b + c * c);
-    return metric == 1 ? a + b + c : (metric == 2 ? largest : euclid);
+    const float is_sum = (float)(metric == 1);
+    const float is_largest = (float)(metric == 2);
+    return euclid + is_sum * (a + b + c - euclid) + is_largest * (largest - euclid);
 }
 
 // (F1, F2) by a metric: F1 is exact up to a jitter of 0.5 for the sum, of 1 for the largest.
