@@ -23,6 +23,7 @@ constexpr int result_rows = 0 RESULT_BUFFERS(COUNT_ROW);
 // Readable memory behind every pointer: a kernel may load from the start of a buffer that the scene
 // left empty.
 alignas(64) const unsigned char zeros[256] = {};
+const float one_cell[] = {0, 1, 0, 1};  // of an environment: the row's share, the column's in it
 
 class CpuBackend final : public Backend {
 public:
@@ -156,13 +157,15 @@ void CpuBackend::add_neutral(const SceneData& scene)
         buffers_[row] = neutral.data();
     };
     int row = 0;
-    int normals = 0, tangents = 0, colors = 0;
-#define FIND_ROW(type, name)                                   \
-    if (std::string_view(#name) == "normals") normals = row;   \
-    if (std::string_view(#name) == "tangents") tangents = row; \
-    if (std::string_view(#name) == "colors") colors = row;     \
+    int normals = 0, tangents = 0, colors = 0, cells = 0;
+#define FIND_ROW(type, name)                                         \
+    if (std::string_view(#name) == "normals") normals = row;         \
+    if (std::string_view(#name) == "tangents") tangents = row;       \
+    if (std::string_view(#name) == "colors") colors = row;           \
+    if (std::string_view(#name) == "environment_cells") cells = row; \
     ++row;
     SCENE_BUFFERS(FIND_ROW)
+    if (scene.environment_cells.empty()) buffers_[cells] = one_cell;
     if (covered & EFFECT_SMOOTH_NORMALS)
         replace(neutral_normals_, scene.normals, NORMAL_FLAT, normals);
     if (covered & EFFECT_NORMAL_MAP) replace(neutral_tangents_, scene.tangents, 0u, tangents);

@@ -5,25 +5,25 @@
 #include "common/layout.h"
 
 // Read only, filled by the host once a render. X(element type, name)
-#define SCENE_BUFFERS(X)             \
-    X(Settings, settings)            \
-    X(float4, positions)             \
-    X(uint, normals)                 \
-    X(uint, tangents)                \
-    X(float2, uvs)                   \
-    X(float4, colors)                \
-    X(Triangle, triangles)           \
-    X(int, triangle_objects)         \
-    X(Instance, instances)           \
-    X(Material, materials)           \
-    X(TextureSlot, texture_slots)    \
-    X(Image, images)                 \
-    X(uint, texels_8)                \
-    X(float4, texels_float)          \
-    X(Light, lights)                 \
-    X(AliasEntry, light_choice)      \
-    X(AliasEntry, environment_cells) \
-    X(BvhNode, bvh_nodes)            \
+#define SCENE_BUFFERS(X)          \
+    X(Settings, settings)         \
+    X(float4, positions)          \
+    X(uint, normals)              \
+    X(uint, tangents)             \
+    X(float2, uvs)                \
+    X(float4, colors)             \
+    X(Triangle, triangles)        \
+    X(int, triangle_objects)      \
+    X(Instance, instances)        \
+    X(Material, materials)        \
+    X(TextureSlot, texture_slots) \
+    X(Image, images)              \
+    X(uint, texels_8)             \
+    X(float4, texels_float)       \
+    X(Light, lights)              \
+    X(AliasEntry, light_choice)   \
+    X(float, environment_cells)   \
+    X(BvhNode, bvh_nodes)         \
     X(int, bvh_items)
 
 // State of the paths in flight, in planes: one array per component. X(type, name, life)

@@ -52,6 +52,8 @@ typedef struct {
     int reserved;
 } Settings;
 
+#define MOST_ENVIRONMENT_CELLS 1024  // in a row or a column: ten halvings find one
+
 #define CAMERA_PERSPECTIVE 0
 #define CAMERA_ORTHOGRAPHIC 1
 #define FILTER_BOX 0

@@ -114,11 +114,10 @@ SHARED float2 sample_pair(SampleKey key, int dimension)
 // The pairs that a path uses, in order.
 #define PAIR_PIXEL_FILTER 0
 #define PAIR_FIRST_BOUNCE 1
-#define PAIRS_PER_BOUNCE 4
-#define PAIR_CHOICE 0   // which light
-#define PAIR_LIGHT 1    // a point on the light
-#define PAIR_SCATTER 2  // direction and lobe
-#define PAIR_CELL 3     // within a cell of the environment
+#define PAIRS_PER_BOUNCE 4  // the last one is free
+#define PAIR_CHOICE 0       // which light
+#define PAIR_LIGHT 1        // a point on the light
+#define PAIR_SCATTER 2      // direction and lobe
 
 SHARED float2 sample_bounce_pair(SampleKey key, int depth, int pair)
 {

@@ -36,6 +36,7 @@ namespace stored {
 #define STORED_int int
 #define STORED_uint uint
 using STORED_float = float;
+using STORED_double = float;  // what a row of `float` has become when it comes here
 using STORED_float2 = stored::float2;
 using STORED_float4 = stored::float4;
 #define STORED_NAME(type, bytes) \

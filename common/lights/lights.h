@@ -35,7 +35,7 @@ SHARED LightSample light_sample_select(int is_second, LightSample a, LightSample
 
 // A sample of the light `light` seen from `from`; the kinds that the scene has none of cost
 // nothing.
-SHARED LightSample light_sample(const Scene* scene, int light, float3 from, float2 u, float2 within)
+SHARED LightSample light_sample(const Scene* scene, int light, float3 from, float2 u)
 {
     const int kind = scene->lights[light].kind;
     LightSample sample;
@@ -54,7 +54,7 @@ SHARED LightSample light_sample(const Scene* scene, int light, float3 from, floa
     }
     if (uses(scene, EFFECT_ENVIRONMENT))
         sample = light_sample_select(kind == LIGHT_ENVIRONMENT, sample,
-                                     environment_light_sample(scene, u, within));
+                                     environment_light_sample(scene, u));
     return sample;
 }
 

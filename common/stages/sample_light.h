@@ -16,15 +16,13 @@ SHARED void sample_light(const Scene* scene, const Paths* paths, int i)
         sample_key(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i));
     const float2 choice = sample_bounce_pair(key, depth, PAIR_CHOICE);
     const float2 on_light = sample_bounce_pair(key, depth, PAIR_LIGHT);
-    float2 in_cell = on_light;
-    if (uses(scene, EFFECT_ENVIRONMENT)) in_cell = sample_bounce_pair(key, depth, PAIR_CELL);
 
     const float3 position = get_position(paths, i);
     const float3 face_normal = get_face_normal(paths, i);
     const float3 normal = get_normal(paths, i);
     const float3 origin = position + face_normal * get_position_error(paths, i);
     const int light = light_choose(scene, choice);
-    const LightSample sample = light_sample(scene, light, origin, on_light, in_cell);
+    const LightSample sample = light_sample(scene, light, origin, on_light);
 
     const Frame frame = frame_of(normal);
     const float3 wi = to_frame(frame, sample.direction);

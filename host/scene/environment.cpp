@@ -1,7 +1,6 @@
 // The environment: its radiance map and the cells by which light sampling finds its bright parts.
 #include "host/scene/environment.hpp"
 
-#include "host/scene/alias_table.hpp"
 #include "host/scene/scene_assembly.hpp"
 
 #include <algorithm>
@@ -15,6 +14,8 @@ using std::numbers::pi;
 
 constexpr int most_cell_columns = 1024;
 constexpr int most_cell_rows = 512;
+static_assert(most_cell_columns <= MOST_ENVIRONMENT_CELLS &&
+              most_cell_rows <= MOST_ENVIRONMENT_CELLS);
 
 // Part of a cell's weight that follows the brightest texel reaching into it rather than the mean,
 // so that a bright corner is never much rarer than it is bright.
@@ -77,6 +78,40 @@ CellBrightness brightness(const std::vector<float>& map, int width, int height,
         }
     }
     return result;
+}
+
+// Appends the cumulated shares of the weights: count + 1 values from 0 to 1, never falling, in
+// units of a sample value, 2^-24. A weight of zero gets an empty interval. If all are zero, the
+// first one gets everything, so that kernels may search; returns the sum of the weights.
+double append_cumulated(std::span<const double> weights, std::vector<float>& table)
+{
+    double total = 0;
+    for (const double weight : weights) {
+        total += weight;
+    }
+    double sum = 0;
+    table.push_back(0);
+    for (const double weight : weights) {
+        sum += weight;
+        table.push_back(total > 0 ? float(std::round(sum / total * 0x1p24) * 0x1p-24) : 1.0f);
+    }
+    return total;
+}
+
+// The rows' shares, then those of the columns in each row: environment_cells, see
+// common/lights/environment.h.
+void cumulate(std::span<const double> weights, int rows, int columns, std::vector<float>& table)
+{
+    std::vector<double> row_weights;
+    std::vector<float> of_columns;
+    of_columns.reserve(size_t(rows) * size_t(columns + 1));
+    for (int row = 0; row < rows; ++row) {
+        row_weights.push_back(append_cumulated(
+            weights.subspan(size_t(row) * size_t(columns), size_t(columns)), of_columns));
+    }
+    table.clear();
+    append_cumulated(row_weights, table);
+    table.insert(table.end(), of_columns.begin(), of_columns.end());
 }
 
 // Linear floats, whatever the file held.
@@ -145,14 +180,9 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
             integral += cell.mean * solid_angle;
         }
     }
-    data.environment_cells = alias_table(weights);
     s.cell_columns = columns;
     s.cell_rows = rows;
-    if (data.environment_cells.empty()) {
-        // Black: never chosen, but kernels load before they select.
-        data.environment_cells = {AliasEntry{1, 0, 0, 0}};
-        s.cell_columns = s.cell_rows = 1;
-    }
+    cumulate(weights, rows, columns, data.environment_cells);
     if (file.bad_texels > 0) {
         data.notices.push_back("environment: " + std::to_string(file.bad_texels) +
                                " values were NaN, infinite or negative; they were replaced");

@@ -2,6 +2,7 @@
 #include "platform.h"
 
 #include "common/lights/lights.h"
+#include "common/random.h"
 #include "host/scene/scene_builder.hpp"
 #include "tests/common/statistics.hpp"
 
@@ -68,6 +69,12 @@ TEST(Lights, AreChosenByTheirProbability)
     EXPECT_GT(chi_square_probability(expected, counts), 1e-4);
 }
 
+double cell_probability(const Scene& scene, int row, int column)
+{
+    return double(environment_share(&scene, 0, row)) *
+           double(environment_share(&scene, environment_row_start(&scene, row), column));
+}
+
 // Each of the map's cells in four parts; the direction is turned back by the code under test's
 // inverse, whose own truth the orientation tests of the pictures show.
 TEST(Lights, EnvironmentSamplesFollowTheirDensity)
@@ -80,13 +87,10 @@ TEST(Lights, EnvironmentSamplesFollowTheirDensity)
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x)
             expected[size_t(y * columns + x)] =
-                draws *
-                double(data.environment_cells[size_t(y / parts * width + x / parts)].probability) /
-                (parts * parts);
+                draws * cell_probability(scene, y / parts, x / parts) / (parts * parts);
     std::mt19937 random(2);
     for (int k = 0; k < draws; ++k) {
-        const float2 choice = uniform_pair(random);
-        const LightSample sample = environment_light_sample(&scene, choice, uniform_pair(random));
+        const LightSample sample = environment_light_sample(&scene, uniform_pair(random));
         const float2 uv = environment_uv(direction_to_environment(&scene, sample.direction));
         const int x = std::min(columns - 1, int(uv.x * columns));
         const int y = std::min(rows - 1, int(uv.y * rows));
@@ -115,6 +119,117 @@ TEST(Lights, EnvironmentDensityIntegratesToOne)
                    3.14159265358979 * 3.14159265358979 / (double(size) * size);
         }
     EXPECT_NEAR(sum, 1, 1e-4);
+}
+
+// A map in which many texels and whole rows are black: each texel a cell.
+SceneData sparse_sky(int width, int height)
+{
+    std::mt19937 random(8);
+    Picture map{width, height, {}, {}, false, 0};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const bool is_lit = y % 7 > 2 && x % 11 > 4 && x < width - 9;
+            const float value = is_lit ? std::exp2(40 * uniform_pair(random).x - 30) : 0.0f;
+            map.floats.insert(map.floats.end(), {value, value, value, 1});
+        }
+    SceneBuilder builder;
+    builder.set_environment(map);
+    return builder.finish();
+}
+
+// The search against its definition, on both sides of each border between two cells: the last cell
+// that starts at u or before, which is never an empty one.
+void expect_found(const Scene& scene, int start, int count)
+{
+    const float* table = scene.environment_cells + start;
+    ASSERT_EQ(table[0], 0);
+    ASSERT_EQ(table[count], 1);
+    for (int cell = 0; cell < count; ++cell) {
+        ASSERT_LE(table[cell], table[cell + 1]);
+        for (const float u : {table[cell], table[cell + 1] - 0x1p-24f}) {
+            if (u < table[cell] || u >= table[cell + 1]) continue;
+            ASSERT_EQ(environment_find(&scene, start, count, u), cell);
+            const float within = environment_within(&scene, start, cell, u);
+            ASSERT_GT(within, 0);
+            ASSERT_LE(within, 1);
+        }
+    }
+}
+
+TEST(Lights, EnvironmentCellsAreFound)
+{
+    for (const auto& [width, height] : {std::pair{1, 1}, {7, 5}, {64, 33}, {1024, 512}}) {
+        const SceneData data = sparse_sky(width, height);
+        const Scene scene = view_of(data);
+        const int rows = data.settings[0].cell_rows, columns = data.settings[0].cell_columns;
+        ASSERT_NO_FATAL_FAILURE(expect_found(scene, 0, rows));
+        for (int row = 0; row < rows; ++row)
+            ASSERT_NO_FATAL_FAILURE(
+                expect_found(scene, environment_row_start(&scene, row), columns));
+    }
+}
+
+// Neighbours stay neighbours: a direction's v follows y alone, its u rises with x.
+TEST(Lights, EnvironmentSamplesKeepTheOrderOfTheirNumbers)
+{
+    const SceneData data = sparse_sky(64, 32);
+    const Scene scene = view_of(data);
+    float last_v = 0;
+    for (int y = 0; y < 64; ++y) {
+        float last_u = 0;
+        for (int x = 0; x < 64; ++x) {
+            const float2 u = make_float2(float(x) / 64, float(y) / 64);
+            const LightSample sample = environment_light_sample(&scene, u);
+            const float2 uv = environment_uv(direction_to_environment(&scene, sample.direction));
+            ASSERT_GE(uv.x, last_u - 1e-6f);
+            ASSERT_GE(uv.y, last_v - 1e-6f);
+            last_u = uv.x;
+            if (x == 63) last_v = uv.y;
+        }
+    }
+}
+
+// Variance of the irradiance on a horizontal surface that `samples` points estimate, relative to
+// its square, times the number of points: constant for random points.
+double error_per_sample(const Scene& scene, int samples)
+{
+    constexpr int trials = 2000;
+    double sum = 0, squares = 0;
+    for (int trial = 0; trial < trials; ++trial) {
+        double estimate = 0;
+        for (int k = 0; k < samples; ++k) {
+            const SampleKey key{unsigned(k), hash_uint(unsigned(trial))};
+            const LightSample sample = environment_light_sample(&scene, sample_pair(key, 3));
+            if (sample.direction.y > 0 && sample.pdf > 0)
+                estimate += double(sample.radiance.x) * sample.direction.y / sample.pdf / samples;
+        }
+        sum += estimate;
+        squares += estimate * estimate;
+    }
+    const double mean = sum / trials;
+    return (squares / trials - mean * mean) / (mean * mean) * samples;
+}
+
+// The points of a sequence are spread evenly over the square, and the directions made of them over
+// the sky: the error falls faster than with random points.
+TEST(Lights, EnvironmentSamplesStayStratified)
+{
+    SceneBuilder builder;
+    Picture map{256, 128, {}, {}, false, 0};
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 256; ++x) {
+            const double sun = std::exp(-0.02 * ((x - 90) * (x - 90) + (y - 30) * (y - 30)));
+            const float value = float(1 + 0.5 * std::sin(0.07 * x) + 60 * sun);
+            map.floats.insert(map.floats.end(), {value, value, value, 1});
+        }
+    builder.set_environment(map);
+    const SceneData data = builder.finish();
+    const Scene scene = view_of(data);
+    const double at_1 = error_per_sample(scene, 1);
+    const double at_16 = error_per_sample(scene, 16);
+    const double at_64 = error_per_sample(scene, 64);
+    EXPECT_LT(at_16, 0.03 * at_1);
+    EXPECT_LT(at_64, 0.8 * at_16);
 }
 
 // Density over solid angle: that of the area, seen under its distance and slope.
