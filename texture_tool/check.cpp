@@ -9,6 +9,9 @@ namespace {
 
 // Loops whose constant nest runs this often, in all for one evaluation, go without a budget.
 constexpr long free_iterations = 65536;
+// Loops that run this often are unrolled on the CPU: g++ vectorises no loop that holds another.
+constexpr long most_unrolled = 64;
+constexpr long most_copies = 512;
 // Every call is inlined on a GPU.
 constexpr long most_calls = 10000;
 constexpr long most_bytes = 65536;
@@ -232,6 +235,8 @@ void check(Description& description, const std::string& wanted)
                                       static_cast<double>(loop.outer_trips) *
                                       static_cast<double>(std::max(function.runs, 1L));
             loop.needs_budget = !loop.trips || iterations > static_cast<double>(free_iterations);
+            loop.unrolls = !loop.needs_budget && *loop.trips <= most_unrolled &&
+                           iterations <= static_cast<double>(most_copies);
         }
 }
 

@@ -69,6 +69,8 @@ struct Loop {
     int insert_before = -1;     // where a missing condition goes
     bool never_ends = false;    // has neither a condition nor a way out
     bool needs_budget = false;
+    bool unrolls = false;
+    int token = -1;  // for, while or do
 };
 
 struct Function {

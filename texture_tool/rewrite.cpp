@@ -302,6 +302,9 @@ private:
     void budget(const Function& function)
     {
         for (const Loop& loop : function.loops) {
+            if (is_cpp_ && loop.unrolls && *loop.trips > 0)
+                text_.before(loop.token,
+                             "_Pragma(\"GCC unroll " + std::to_string(*loop.trips) + "\") ");
             if (!loop.needs_budget) continue;
             const std::string spend =
                 "tx_spend(" + std::string(context) + ", " + std::to_string(loop.line) + ")";

@@ -536,6 +536,7 @@ void Walk::loop(const Stmt* node)
     loop.line = static_cast<int>(sources.getSpellingLineNumber(at));
     loop.column = static_cast<int>(sources.getSpellingColumnNumber(at));
     loop.outer_trips = trips_;
+    loop.token = token_at(node->getBeginLoc());
     const Expr* condition = nullptr;
     const VarDecl* counter = nullptr;
     if (const auto* repeat = dyn_cast<ForStmt>(node)) {

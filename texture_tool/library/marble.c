@@ -24,9 +24,9 @@ float3 marble(float scale, float bend, float vein_width, float3 stone, float3 cl
     const float veined = 0.5f + 0.5f * perlin3_seeded(p * 1.3f, 51u);
     const float large = marble_vein(noise3_of_three(q, 61u), vein_width);
     const float fine = marble_vein(noise3_of_two(q * 2.6f + fold, 71u), 0.4f * vein_width);
-    const float grey = smoothstep(0.25f, 0.85f, 0.5f + 0.9f * perlin3_seeded(q * 1.7f, 81u));
+    const float grey = smoothstep(0.2f, 0.75f, 0.5f + 0.9f * noise3_of_two(q * 1.3f, 81u));
     const float grain = perlin3_seeded(p * 60.0f, 91u);
-    const float3 ground = mix(stone, cloud, 0.75f * grey * veined);
+    const float3 ground = mix(stone, cloud, 0.9f * grey * veined);
     const float dark = clamp(large * (0.35f + 0.65f * veined) + 0.45f * fine * veined, 0.0f, 1.0f);
     return mix(ground, vein, dark) * (1.0f + 0.03f * grain);
 }

@@ -3,7 +3,7 @@
 // Result: a colour and, as alpha, how scratched it is.
 //
 // scale (float, above 0; default 3): cells for each unit of the texture coordinates
-// width (float, 0 to 1; default 0.03): of the scratches in cells
+// width (float, 0 to 1; default 0.02): of the scratches in cells
 // amount (float, 0 to 1; default 0.5): how many there are
 // base (float3, linear Rec.709; default [0.24, 0.25, 0.27]): between them
 // scratch (float3, linear Rec.709; default [0.72, 0.72, 0.70]): in their middle
@@ -13,9 +13,9 @@ float scratch_layer(float2 p, float2 turn, float width, uint seed)
 {
     const float x = p.x * turn.x + p.y * turn.y;
     const float y = p.y * turn.x - p.x * turn.y;
-    const float2 cells = worley2_seeded(make_float2(0.28f * x, 2.6f * y), 0.92f, seed);
-    const float border = cells.y - cells.x;
-    return clamp(1.0f - border / width, 0.0f, 1.0f);
+    const float border = voronoi2_border(make_float2(0.22f * x, 2.2f * y), 0.92f, seed);
+    const float inside = 1.0f - border / width;
+    return inside > 0.0f ? inside : 0.0f;
 }
 
 float4 scratches(float scale, float width, float amount, float3 base, float3 scratch)

@@ -3,7 +3,7 @@
 // Result: a colour.
 //
 // scale (float, 1/m, above 0; default 1): factor of the object's size
-// rings (float, 1/m, above 0; default 9): year rings for each metre of radius
+// rings (float, 1/m, above 0; default 13): year rings for each metre of radius
 // waver (float, 0 to 1; default 0.35): how far the rings depart from circles
 // early (float3, linear Rec.709; default [0.52, 0.30, 0.13]): earlywood, grown in spring
 // late (float3, linear Rec.709; default [0.21, 0.085, 0.028]): latewood, grown in summer
@@ -22,13 +22,13 @@ float3 wood(float scale, float rings, float waver, float3 early, float3 late)
     const float year = radius * rings;
     const float age = year - floor(year);
     // Years differ in how dark their latewood turns.
-    const float strength = 0.55f + 0.45f * hash_fraction(hash1((int)floor(year), 41u));
-    const float grown = smoothstep(0.15f, 0.90f, age) * (1.0f - smoothstep(0.93f, 1.0f, age));
+    const float strength = 0.70f + 0.45f * hash_fraction(hash1((int)floor(year), 41u));
+    const float grown = age * (0.25f + 0.75f * age * age) * (1.0f - smoothstep(0.92f, 1.0f, age));
     // Fibres run along the trunk; pores are the darkest of them, most in earlywood.
     const float3 fibre_place = make_float3(p.x * 70.0f, p.y * 2.2f, p.z * 70.0f);
     const float fibre = perlin3_seeded(fibre_place, 51u);
     const float pore_noise = perlin3_seeded(fibre_place * 2.1f, 61u);
     const float pore = smoothstep(0.32f, 0.55f, pore_noise) * (1.0f - 0.6f * grown);
-    const float3 grain = mix(early, late, strength * grown * (0.92f + 0.16f * fibre));
+    const float3 grain = mix(early, late, clamp(strength * grown * (1.0f + 0.18f * fibre), 0.0f, 1.0f));
     return grain * ((1.0f + 0.13f * fibre + 0.10f * bend) * (1.0f - 0.45f * pore));
 }

@@ -3,7 +3,7 @@
 // after struct TextureContext (with `int budget, fault_line, clamped`) and these two:
 //
 //     uint tx_word(TextureContext* tx, int index)      a word of the material buffer
-//     float4 tx_stack(TextureContext* tx, int slot)    another node's result
+//     float4 tx_stack(TextureContext* tx, int slot)    another node's result; slot 0 always exists
 //
 // Word r + 4k of region r describes argument k: its source (-1: constant, else the stack slot),
 // the word where its value begins, its length.
@@ -55,18 +55,31 @@ TX_LOADS(float)
 TX_LOADS(int)
 TX_LOADS(uint)
 
-SHARED float tx_from_result_float(float4 v) { return v.x; }
-SHARED float2 tx_from_result_float2(float4 v) { return TX_NEW(float2, v.x, v.y); }
-SHARED float3 tx_from_result_float3(float4 v) { return TX_NEW(float3, v.x, v.y, v.z); }
-SHARED float4 tx_from_result_float4(float4 v) { return v; }
+// What another node gave where `is_node`, else the constant: both are read and one is taken,
+// because a conditional read keeps a loop over paths scalar.
+SHARED float tx_either_float(int is_node, float4 v, float c) { return is_node ? v.x : c; }
+SHARED float2 tx_either_float2(int is_node, float4 v, float2 c)
+{
+    return TX_NEW(float2, is_node ? v.x : c.x, is_node ? v.y : c.y);
+}
+SHARED float3 tx_either_float3(int is_node, float4 v, float3 c)
+{
+    return TX_NEW(float3, is_node ? v.x : c.x, is_node ? v.y : c.y, is_node ? v.z : c.z);
+}
+SHARED float4 tx_either_float4(int is_node, float4 v, float4 c)
+{
+    return TX_NEW(float4, is_node ? v.x : c.x, is_node ? v.y : c.y, is_node ? v.z : c.z,
+                  is_node ? v.w : c.w);
+}
 
-// Argument k: what another node gave, or the constant.
-#define TX_ARGUMENT_OF_NODE(T)                                            \
-    SHARED T tx_argument_##T(TextureContext* tx, int region, int k)       \
-    {                                                                     \
-        const int source = (int)tx_word(tx, region + 4 * k);              \
-        if (source >= 0) return tx_from_result_##T(tx_stack(tx, source)); \
-        return tx_load_##T(tx, (int)tx_word(tx, region + 4 * k + 1));     \
+// Argument k.
+#define TX_ARGUMENT_OF_NODE(T)                                                 \
+    SHARED T tx_argument_##T(TextureContext* tx, int region, int k)            \
+    {                                                                          \
+        const int source = (int)tx_word(tx, region + 4 * k);                   \
+        const float4 result = tx_stack(tx, source < 0 ? 0 : source);           \
+        const T value = tx_load_##T(tx, (int)tx_word(tx, region + 4 * k + 1)); \
+        return tx_either_##T(source >= 0, result, value);                      \
     }
 #define TX_ARGUMENT(T)                                                \
     SHARED T tx_argument_##T(TextureContext* tx, int region, int k)   \

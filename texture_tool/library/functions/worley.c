@@ -120,6 +120,33 @@ float2 worley3_metric(float3 p, float jitter, int metric, uint seed)
     return make_float2(f1, f2);
 }
 
+// The distance from p to the line halfway between the nearest two points: to the border of the cell,
+// where it is near.
+float voronoi2_border(float2 p, float jitter, uint seed)
+{
+    const float2 corner = make_float2(worley_start(p.x), worley_start(p.y));
+    const uint start = lattice_sum2((int)corner.x, (int)corner.y);
+    const uint s = hash_scramble(seed);
+    float f1 = 1.0e30f;
+    float f2 = 1.0e30f;
+    float2 first = make_float2(0.0f, 0.0f);
+    float2 second = make_float2(1.0f, 0.0f);
+    for (int i = 0; i < 16; ++i) {
+        const float2 v = worley_offset2(corner - p, worley_hash2(start, s, i), i, jitter);
+        const float d = v.x * v.x + v.y * v.y;
+        const int is_first = d < f1;
+        const int is_second = d < f2;
+        second.x = is_first ? first.x : (is_second ? v.x : second.x);
+        second.y = is_first ? first.y : (is_second ? v.y : second.y);
+        f2 = is_first ? f1 : (is_second ? d : f2);
+        first.x = is_first ? v.x : first.x;
+        first.y = is_first ? v.y : first.y;
+        f1 = is_first ? d : f1;
+    }
+    const float2 between = second - first;
+    return 0.5f * (f2 - f1) / sqrt(between.x * between.x + between.y * between.y + 1.0e-12f);
+}
+
 // A number that belongs to the cell of Voronoi's diagram in which p lies.
 uint voronoi2_cell(float2 p, float jitter)
 {
