@@ -112,7 +112,9 @@ void choose_entry(Description& description, const std::string& wanted)
     std::set<std::string> called;
     std::vector<int> defined;
     for (size_t i = 0; i < description.functions.size(); ++i) {
-        if (description.functions[i].body_end >= 0) defined.push_back(static_cast<int>(i));
+        if (description.functions[i].body_end >= 0 &&
+            !description.is_library(description.functions[i].line))
+            defined.push_back(static_cast<int>(i));
         for (const Call& call : description.functions[i].calls)
             called.insert(description.functions[call.callee].name);
     }
@@ -129,11 +131,11 @@ void choose_entry(Description& description, const std::string& wanted)
         names += (names.empty() ? "" : ", ") + name;
     }
     if (defined.empty())
-        return complain(description, 1, 1,
+        return complain(description, description.users_line, 1,
                         "the file defines no function; a texture is a function that "
                         "returns a colour");
     if (!wanted.empty())
-        return complain(description, 1, 1,
+        return complain(description, description.users_line, 1,
                         "no function '" + wanted + "' here; the file defines: " + names);
     for (const char* usual : {"main", "userProc"})
         for (const int number : candidates)
@@ -144,7 +146,7 @@ void choose_entry(Description& description, const std::string& wanted)
     if (candidates.size() == 1)
         description.entry = candidates[0];
     else
-        complain(description, 1, 1,
+        complain(description, description.users_line, 1,
                  candidates.empty()
                      ? "every function is called by another, none can be the texture; name one"
                      : "several functions could be the texture: " + names + "; name one of them");

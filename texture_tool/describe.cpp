@@ -54,9 +54,9 @@ llvm::json::Array occlusion(const Description& description)
 
 std::string message(const Description& description, const Problem& problem)
 {
-    return description.file + ":" + std::to_string(problem.line) + ":" +
-           std::to_string(problem.column) + (problem.is_error ? ": error: " : ": warning: ") +
-           problem.text;
+    const Section at = description.place(problem.line);
+    return at.file + ":" + std::to_string(at.line) + ":" + std::to_string(problem.column) +
+           (problem.is_error ? ": error: " : ": warning: ") + problem.text;
 }
 
 std::string describe(const Description& description, const std::string& id, int changed_lines,
@@ -70,7 +70,7 @@ std::string describe(const Description& description, const std::string& id, int 
         {"entry", entry.name},
         {"id", id},
         {"file", as_utf8(description.file)},
-        {"line", entry.line},
+        {"line", description.place(entry.line).line},
         {"result", entry.result},
         {"arguments", arguments(entry)},
         {"attributes", names(description.attributes)},

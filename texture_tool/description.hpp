@@ -1,6 +1,6 @@
 // What is known of a user's texture once Clang has read it: plain data, all that the tool's later
 // parts (check, rewrite, describe) see. Token numbers count the tokens that are left when the
-// preprocessor is done; lines and columns are the user's own, from 1.
+// preprocessor is done; lines (of `source`) and columns count from 1.
 #pragma once
 
 #include <optional>
@@ -16,6 +16,12 @@ struct Token {
     int column = 0;
     std::string text;
     bool is_from_macro = false;
+};
+
+// A file whose text is part of what is parsed, and the line where it begins there.
+struct Section {
+    std::string file;
+    int line = 1;
 };
 
 // First and last token, both inside; first > last: empty.
@@ -152,8 +158,10 @@ struct Site {
 };
 
 struct Description {
-    std::string file;  // as the user named it
-    std::string source;
+    std::string file;    // as the user named it
+    std::string source;  // the library's functions that are needed, then the user's text
+    std::vector<Section> sections;
+    int users_line = 1;  // of `source`, where the user's text begins
     std::vector<Token> tokens;
     std::vector<Function> functions;
     std::vector<Site> sites;  // inner before outer
@@ -163,6 +171,16 @@ struct Description {
     bool reads_images = false;
     std::vector<Problem> problems;
     int entry = -1;
+
+    // The file and its own line for a line of `source`.
+    Section place(int line) const
+    {
+        Section found{file, line};
+        for (const Section& section : sections)
+            if (section.line <= line) found = {section.file, line - section.line + 1};
+        return found;
+    }
+    bool is_library(int line) const { return line < users_line; }
 };
 
 }  // namespace texture_tool

@@ -17,6 +17,7 @@
 #include <llvm/Support/VirtualFileSystem.h>
 
 #include "texture_tool/language.hpp"
+#include "texture_tool/library.hpp"
 #include "texture_tool/limits.hpp"
 #include "texture_tool/messages.hpp"
 #include "texture_tool/scan.hpp"
@@ -44,7 +45,7 @@ public:
         llvm::SmallString<256> formatted;
         info.FormatDiagnostic(formatted);
         std::string text = formatted.str().str();
-        Problem problem{1, 1, true, ""};
+        Problem problem{description_.users_line, 1, true, ""};
         if (info.hasSourceManager() && info.getLocation().isValid()) {
             const clang::SourceManager& sources = info.getSourceManager();
             const clang::SourceLocation at = sources.getExpansionLoc(info.getLocation());
@@ -175,6 +176,7 @@ void note_missing_returns(const Diagnostics& diagnostics, Description& descripti
         const Token& brace = description.tokens[function.body_end];
         if (!diagnostics.falls_off.count({brace.line, brace.column})) continue;
         function.returns_always = false;
+        if (description.is_library(brace.line)) continue;
         description.problems.push_back({brace.line, brace.column, false,
                                         "'" + function.name +
                                             "' may end without a return and then "
@@ -206,6 +208,14 @@ Description find(const std::string& name, const std::string& source)
     const std::vector<Word> words = scan_words(source);
     check_words(words, description.problems);
     const std::map<std::string, std::string> own_names = rename_own(words, parsed);
+    const LibraryText library = library_for(words);
+    parsed = library.text + parsed;
+    description.source = library.text + source;
+    description.sections = library.sections;
+    description.users_line =
+        1 + static_cast<int>(std::count(library.text.begin(), library.text.end(), '\n'));
+    description.sections.push_back({name, description.users_line});
+    for (Problem& problem : description.problems) problem.line += description.users_line - 1;
 
     llvm::IntrusiveRefCntPtr<llvm::vfs::InMemoryFileSystem> files(
         new llvm::vfs::InMemoryFileSystem);
@@ -227,6 +237,7 @@ Description find(const std::string& name, const std::string& source)
                                               "-fno-trigraphs",
                                               "-ffp-contract=off",
                                               "-fsyntax-only",
+                                              "-fno-caret-diagnostics",
                                               "-Wno-everything",
                                               "-Wreturn-type",
                                               "-Wno-error=return-type",

@@ -192,7 +192,8 @@ std::string prelude()
         for (int n : {2, 3, 4, 8, 16})
             out << "typedef " << type << " " << type << n << " __attribute__((ext_vector_type(" << n
                 << ")));\n";
-    out << "#define NULL ((void*)0)\n"
+    out << "#define __opencl_c_generic_address_space 1\n"
+           "#define NULL ((void*)0)\n"
            "#define __global\n"
            "#define INFINITY (1e39f)\n#define NAN (1e39f * 0.0f)\n"
            "#define HUGE_VALF (1e39f)\n"

@@ -176,6 +176,7 @@ int TokenText::count_changed_lines() const
             lines.insert(description_.tokens[number].line);
     for (const Token& token : description_.tokens)
         if (token.is_from_macro) lines.insert(token.line);
+    lines.erase(lines.begin(), lines.lower_bound(description_.users_line));
     return static_cast<int>(lines.size());
 }
 

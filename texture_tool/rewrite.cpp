@@ -27,14 +27,18 @@ public:
         for (const Function& function : description_.functions) budget(function);
         for (size_t i = 0; i < description_.functions.size(); ++i) signature(i);
         drop_words();
+        for (const Function& function : description_.functions)
+            if (description_.is_library(function.line) && function.runs == 0)
+                text_.remove(function.range);
         Rewritten result;
-        result.text = "#line 1 \"" + quoted(description_.file) + "\"\n";
-        if (is_cpp_) result.text = "namespace " + id_ + " {\n" + result.text;
-        result.text += text_.file() + "\n#line 1 \"<generated for " + id_ + ">\"\n" + entry();
+        if (is_cpp_) result.text = "namespace " + id_ + " {\n";
+        result.text +=
+            with_line_marks(text_.file()) + "\n#line 1 \"<generated for " + id_ + ">\"\n" + entry();
         if (is_cpp_) result.text += "}  // namespace " + id_ + "\n";
         result.changed_lines = text_.count_changed_lines();
-        result.total_lines = static_cast<int>(
-            std::count(description_.source.begin(), description_.source.end(), '\n'));
+        result.total_lines = static_cast<int>(std::count(description_.source.begin(),
+                                                         description_.source.end(), '\n')) -
+                             description_.users_line + 1;
         return result;
     }
 
@@ -306,8 +310,8 @@ private:
                 text_.before(loop.token,
                              "_Pragma(\"GCC unroll " + std::to_string(*loop.trips) + "\") ");
             if (!loop.needs_budget) continue;
-            const std::string spend =
-                "tx_spend(" + std::string(context) + ", " + std::to_string(loop.line) + ")";
+            const std::string spend = "tx_spend(" + std::string(context) + ", " +
+                                      std::to_string(description_.place(loop.line).line) + ")";
             if (loop.condition.last < 0) {
                 text_.before(loop.insert_before, spend);
                 continue;
@@ -361,6 +365,21 @@ private:
             if (word == "register" || word == "restrict" || word == "__restrict")
                 text_.replace(static_cast<int>(i), "");
         }
+    }
+
+    // Says before each file's text which file it is.
+    std::string with_line_marks(const std::string& text) const
+    {
+        std::string marked;
+        size_t at = 0;
+        int line = 1;
+        for (const Section& section : description_.sections) {
+            const size_t start = at;
+            for (; line < section.line && at < text.size(); ++line) at = text.find('\n', at) + 1;
+            marked += text.substr(start, at - start);
+            marked += "#line 1 \"" + quoted(section.file) + "\"\n";
+        }
+        return marked + text.substr(at);
     }
 
     std::string entry() const

@@ -202,7 +202,9 @@ void Walk::reference(const DeclRefExpr* node)
     if (!is_users(target)) return;
     const auto* variable = dyn_cast<VarDecl>(target);
     const bool is_static_table = variable && variable->isStaticLocal();
-    const bool is_global = target->getDeclContext()->isTranslationUnit();
+    const DeclContext* home = target->getDeclContext();
+    if (isa<EnumConstantDecl>(target)) home = cast<EnumDecl>(home)->getDeclContext();
+    const bool is_global = home->isTranslationUnit();
     if (is_static_table) {
         Site& site = add(SiteKind::Name);
         site.token = token_at(node->getLocation());

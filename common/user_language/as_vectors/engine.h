@@ -6,6 +6,7 @@
 typedef struct {
     int slot;  // of the scene's texture slots; -1: white
 } sam2D;
+typedef sam2D sampler2D;
 
 // The predecessor's handle of a hit, which textures only pass on.
 typedef struct SurfaceInfo SurfaceInfo;
