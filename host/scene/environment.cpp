@@ -121,8 +121,8 @@ Picture linear_map(const Picture& map)
     if (map.is_8_bit()) {
         result.floats.resize(map.bytes.size());
         for (size_t k = 0; k < map.bytes.size(); ++k) {
-            const float value = float(map.bytes[k]) / 255;
-            result.floats[k] = k % 4 == 3 ? value : srgb_decode(value);
+            result.floats[k] =
+                k % 4 == 3 ? float(map.bytes[k]) / 255 : srgb_decode_byte(map.bytes[k]);
         }
         result.bytes.clear();
     } else if (map.is_integer) {

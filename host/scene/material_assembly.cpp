@@ -49,7 +49,7 @@ float texel_srgb(const Picture& p, size_t texel, int channel)
 {
     const size_t at = 4 * texel + size_t(channel);
     if (p.is_8_bit()) {
-        return srgb_decode(float(p.bytes[at]) / 255);
+        return srgb_decode_byte(p.bytes[at]);
     }
     return p.is_integer ? srgb_decode(p.floats[at]) : p.floats[at];
 }

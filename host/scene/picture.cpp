@@ -269,4 +269,16 @@ float srgb_decode(float encoded)
                                : float(std::pow((double(encoded) + 0.055) / 1.055, 2.4));
 }
 
+float srgb_decode_byte(std::uint8_t encoded)
+{
+    static const std::array<float, 256> table = [] {
+        std::array<float, 256> values{};
+        for (size_t k = 0; k < values.size(); ++k) {
+            values[k] = srgb_decode(float(k) / 255);
+        }
+        return values;
+    }();
+    return table[encoded];
+}
+
 }  // namespace diptych

@@ -32,5 +32,6 @@ Picture read_picture(std::span<const std::uint8_t> bytes, const std::string& whe
                      size_t max_pixels);
 
 float srgb_decode(float encoded);
+float srgb_decode_byte(std::uint8_t encoded);  // the same of encoded / 255, from a table
 
 }  // namespace diptych

@@ -108,6 +108,8 @@ TEST(Picture, Srgb_decodes_as_the_standard_says)
     EXPECT_NEAR(srgb_decode(1), 1, 1e-7);
     EXPECT_NEAR(srgb_decode(0.5f), 0.21404114, 1e-7);
     EXPECT_NEAR(srgb_decode(0.04f), 0.04 / 12.92, 1e-9);
+    for (int k = 0; k < 256; ++k)
+        EXPECT_EQ(srgb_decode_byte(std::uint8_t(k)), srgb_decode(float(k) / 255));
 }
 
 // Reads every image of a folder from memory and by name; counts those that can be read.
