@@ -166,7 +166,8 @@ void check_entry(Description& description)
     if (entry.result != "float" && entry.result != "float2" && entry.result != "float3" &&
         entry.result != "float4")
         complain(description, entry.line, entry.column,
-                 "the texture '" + entry.name + "' must return float, float2, float3 or float4");
+                 "the texture '" + entry.name +
+                     "' returns no colour; let it return float, float2, float3 or float4");
     for (const Parameter& parameter : entry.parameters) {
         const bool is_given =
             parameter.passing == Passing::Value || parameter.passing == Passing::View;

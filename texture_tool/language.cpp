@@ -194,6 +194,7 @@ std::string prelude()
                 << ")));\n";
     out << "#define __opencl_c_generic_address_space 1\n"
            "#define NULL ((void*)0)\n"
+           "typedef uint cl_mem_fence_flags;\n"
            "#define __global\n"
            "#define INFINITY (1e39f)\n#define NAN (1e39f * 0.0f)\n"
            "#define HUGE_VALF (1e39f)\n"

@@ -31,6 +31,7 @@ const char* const usage =
 struct Options {
     std::string file, entry, id = "texture", name, opencl, cpp, json;
     bool wants_help = false;
+    bool wants_version = false;
 };
 
 bool is_identifier(const std::string& text)
@@ -64,6 +65,8 @@ Options parse(int count, char** values)
             options.json = value();
         else if (word == "--check-only")
             continue;
+        else if (word == "--version")
+            options.wants_version = true;
         else if (word == "--help" || word == "-h")
             options.wants_help = true;
         else if (word.rfind("--", 0) == 0)
@@ -73,7 +76,7 @@ Options parse(int count, char** values)
         else
             throw std::runtime_error(word + ": one file at a time; see --help");
     }
-    if (options.wants_help) return options;
+    if (options.wants_help || options.wants_version) return options;
     if (options.file.empty()) throw std::runtime_error(std::string("no file given\n") + usage);
     if (!is_identifier(options.id))
         throw std::runtime_error("--id " + options.id +
@@ -134,6 +137,10 @@ int main(int count, char** values)
         const Options options = parse(count, values);
         if (options.wants_help) {
             std::cout << usage;
+            return 0;
+        }
+        if (options.wants_version) {
+            std::cout << "diptych-texture, LLVM " << parser_version() << "\n";
             return 0;
         }
         return run(options);

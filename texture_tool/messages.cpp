@@ -67,8 +67,16 @@ const std::pair<const char*, const char*> remedies[] = {
 
 }  // namespace
 
-std::string with_remedy(const std::string& message)
+std::string with_remedy(const std::string& said)
 {
+    std::string message = said;
+    for (const char* word : {"__private ", "__generic ", "__global ", "__constant ", "__private"})
+        for (size_t at = 0; (at = message.find(word)) != std::string::npos;)
+            message.erase(at, std::string(word).size());
+    if (message.find("typedef type") != std::string::npos)
+        return "a function that is not available to textures is called; use OpenCL's math, "
+               "geometric, "
+               "common, relational and integer functions";
     if (message.find("implicit declaration of function") != std::string::npos ||
         (message.find("call to undeclared function") != std::string::npos))
         return unknown_function(quoted(message));

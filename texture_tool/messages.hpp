@@ -5,6 +5,6 @@
 
 namespace texture_tool {
 
-std::string with_remedy(const std::string& message);
+std::string with_remedy(const std::string& said);
 
 }  // namespace texture_tool

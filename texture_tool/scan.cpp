@@ -135,6 +135,9 @@ void check_directive(const Word& hash, const Word& name, std::vector<Problem>& p
 
 void check_word(const Word& word, std::vector<Problem>& problems)
 {
+    static const std::set<std::string> known = {
+        "__constant", "__global",   "__private", "__kernel",           "__local",
+        "__inline",   "__restrict", "__LINE__",  "__OPENCL_VERSION__", "__OPENCL_C_VERSION__"};
     const std::string& text = word.text;
     if (text == "__attribute__" || text == "__attribute" || text == "__declspec")
         complain(problems, word,
@@ -150,6 +153,8 @@ void check_word(const Word& word, std::vector<Problem>& problems)
     else if (text.rfind("__builtin", 0) == 0)
         complain(problems, word,
                  "unknown function '" + text + "': compilers' own functions differ; use OpenCL's");
+    else if (text.rfind("__", 0) == 0 && !word.is_in_directive && !known.count(text))
+        complain(problems, word, "'" + text + "' belongs to the compiler; write it in C99");
     else if (is_opencl_word(text))
         complain(problems, word, "'" + text + "' is reserved by OpenCL C; choose another name");
     else if (text == "double" || text == "half")

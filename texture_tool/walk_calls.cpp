@@ -236,7 +236,7 @@ void Walk::reader_call(const CallExpr* node, const std::string& name)
         const Parameter* hit = parameter_named(node->getArg(0));
         if (!hit || hit->passing != Passing::Engine)
             return complain(node->getArg(0)->getBeginLoc(),
-                            "readAttr takes the name alone, or after the "
+                            "this is not the hit; readAttr takes the name alone, or after the "
                             "parameter of type const SurfaceInfo*");
     }
     const StringLiteral* literal = literal_of(argument);
@@ -304,7 +304,7 @@ void Walk::occlusion_call(const CallExpr* node)
     if (where != "upper" && where != "lower" && where != "both")
         return complain(
             node->getArg(0)->getBeginLoc(),
-            "the hemisphere must be written here as \"upper\", "
+            "no such hemisphere; write \"upper\", "
             "\"lower\" or \"both\", with \" same_object\" after it where only the object itself "
             "occludes");
     request.hemisphere = where;

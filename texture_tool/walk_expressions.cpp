@@ -142,8 +142,8 @@ void Walk::expression(const Expr* node)
     if (const auto* literal = dyn_cast<FloatingLiteral>(node)) {
         const int token = token_at(literal->getBeginLoc());
         if (spelled_type(literal->getType()) != "float" &&
-            (token < 0 || tolower(description_.tokens[token].text.back()) == 'l' ||
-             tolower(description_.tokens[token].text.back()) == 'h'))
+            (token < 0 ||
+             isalpha(static_cast<unsigned char>(description_.tokens[token].text.back()))))
             complain(literal->getBeginLoc(), "this number is not a float; end it with f");
         Site& site = add(SiteKind::FloatLiteral);
         site.token = token;
@@ -152,7 +152,8 @@ void Walk::expression(const Expr* node)
     if (const auto* size = dyn_cast<UnaryExprOrTypeTraitExpr>(node)) {
         Expr::EvalResult result;
         if (size->getKind() != UETT_SizeOf || !size->EvaluateAsInt(result, context_))
-            return complain(node->getBeginLoc(), "only sizeof is part of the language");
+            return complain(node->getBeginLoc(),
+                            "this is not part of the language; only sizeof is");
         if (!size->isArgumentType() && parameter_named(size->getArgumentExpr()) &&
             parameter_named(size->getArgumentExpr())->passing != Passing::Value)
             complain(node->getBeginLoc(),

@@ -31,7 +31,7 @@ foreach(loops scalar vector)
     $<$<CXX_COMPILER_ID:GNU>:-Wno-narrowing> $<$<CXX_COMPILER_ID:Clang>:-Wno-c++11-narrowing>)
 endforeach()
 target_compile_definitions(library_loops_scalar PRIVATE LOOPS=loops_scalar ALWAYS_INLINE=)
-target_compile_options(library_loops_scalar PRIVATE -O1)
+target_compile_options(library_loops_scalar PRIVATE -O1 -fno-tree-vectorize)
 target_compile_definitions(library_loops_vector PRIVATE LOOPS=loops_vector
   "ALWAYS_INLINE=__attribute__((always_inline))")
 target_compile_options(library_loops_vector PRIVATE -O3 -march=native -fopenmp-simd)

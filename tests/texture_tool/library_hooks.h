@@ -22,19 +22,30 @@ typedef struct TextureContext {
     float open;
 } TextureContext;
 
-SHARED TextureContext hit_context(GLOBAL const float* hit, GLOBAL const uint* words)
+// Float c of hit k of `count`. The plane's start comes first, so that the index is k alone, which
+// g++ needs to see neighbours.
+SHARED float hit_float(GLOBAL const float* hits, int count, int c, int k)
+{
+    GLOBAL const float* plane = hits + c * count;
+    return plane[k];
+}
+
+SHARED TextureContext hit_context(GLOBAL const float* hits, int count, int k,
+                                  GLOBAL const uint* words)
 {
     TextureContext tx;
     tx.budget = 0;
     tx.fault_line = 0;
     tx.clamped = 0;
     tx.words = words;
-    tx.place = TX_NEW(float3, hit[0], hit[1], hit[2]);
-    tx.normal = TX_NEW(float3, hit[3], hit[4], hit[5]);
-    tx.uv = TX_NEW(float2, hit[6], hit[7]);
-    tx.uv_dx = TX_NEW(float2, hit[8], hit[9]);
-    tx.uv_dy = TX_NEW(float2, hit[10], hit[11]);
-    tx.open = hit[12];
+    tx.place = TX_NEW(float3, hit_float(hits, count, 0, k), hit_float(hits, count, 1, k),
+                      hit_float(hits, count, 2, k));
+    tx.normal = TX_NEW(float3, hit_float(hits, count, 3, k), hit_float(hits, count, 4, k),
+                       hit_float(hits, count, 5, k));
+    tx.uv = TX_NEW(float2, hit_float(hits, count, 6, k), hit_float(hits, count, 7, k));
+    tx.uv_dx = TX_NEW(float2, hit_float(hits, count, 8, k), hit_float(hits, count, 9, k));
+    tx.uv_dy = TX_NEW(float2, hit_float(hits, count, 10, k), hit_float(hits, count, 11, k));
+    tx.open = hit_float(hits, count, 12, k);
     return tx;
 }
 

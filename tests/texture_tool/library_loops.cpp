@@ -16,22 +16,25 @@ namespace {
 
 // The body is a function, because g++ takes structs of a loop's own body for arrays of lanes.
 #define LOOP(name)                                                                               \
-    SHARED void name##_at(const float* hits, const std::uint32_t* words, int k, float* results,  \
-                          int* clamped)                                                          \
+    SHARED void name##_at(const float* hits, const std::uint32_t* words, int count, int k,       \
+                          float* results, int* clamped)                                          \
     {                                                                                            \
-        TextureContext tx = hit_context(hits + HIT_FLOATS * k, words);                           \
+        TextureContext tx = hit_context(hits, count, k, words);                                  \
         const float4 value = name::name##_entry(&tx, 0);                                         \
-        results[4 * k] = value.x;                                                                \
-        results[4 * k + 1] = value.y;                                                            \
-        results[4 * k + 2] = value.z;                                                            \
-        results[4 * k + 3] = value.w;                                                            \
+        float* green = results + count;                                                          \
+        float* blue = green + count;                                                             \
+        float* alpha = blue + count;                                                             \
+        results[k] = value.x;                                                                    \
+        green[k] = value.y;                                                                      \
+        blue[k] = value.z;                                                                       \
+        alpha[k] = value.w;                                                                      \
         clamped[k] = tx.clamped;                                                                 \
     }                                                                                            \
     [[gnu::noinline]] void name##_loop(const float* hits, const std::uint32_t* words, int count, \
                                        float* results, int* clamped)                             \
     {                                                                                            \
         _Pragma("omp simd") for (int k = 0; k < count; ++k)                                      \
-            name##_at(hits, words, k, results, clamped);                                         \
+            name##_at(hits, words, count, k, results, clamped);                                  \
     }
 LIBRARY_TEXTURES(LOOP)
 

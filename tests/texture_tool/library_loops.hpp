@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-// Evaluates `count` hits of HIT_FLOATS floats with the arguments in `words`, whose region begins at
-// word 0; four floats of result and the number of indexes brought inside for each.
+// Evaluates `count` hits, HIT_FLOATS planes of floats, with the arguments in `words`, whose region
+// begins at word 0: four planes of results, and how many indexes were brought inside.
 using LibraryLoop = void (*)(const float* hits, const std::uint32_t* words, int count,
                              float* results, int* clamped);
 using LibraryLoops = std::map<std::string, LibraryLoop>;

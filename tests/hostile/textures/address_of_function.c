@@ -1,0 +1,7 @@
+// expect: 5:11: taking address of function is not allowed; correct it to C99 with OpenCL's vectors
+float f(float x) { return x; }
+float4 t(float x, int n)
+{
+    n = (&f == 0);
+    return (float4)(0.0f);
+}

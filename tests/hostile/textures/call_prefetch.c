@@ -1,0 +1,6 @@
+// expect: 4:5: no matching function for call to 'prefetch'; check the number and types of the arguments
+float4 t(float x, int n)
+{
+    prefetch(&x, 1);
+    return (float4)(0.0f);
+}

@@ -1,0 +1,4 @@
+// expect: 3:1: #include reads another file, which textures may not; paste what you need of it, OpenCL's functions are there without it
+#define HEADER <stdlib.h>
+#include HEADER
+float4 t(float2 uv) { return (float4)(uv, 0.0f, 1.0f); }

@@ -1,0 +1,6 @@
+// expect: 4:5: this loop never ends; give it a condition, a break or a return
+float4 t(float x, int n)
+{
+    while (1) { for (;;) break; }
+    return (float4)(0.0f);
+}

@@ -1,0 +1,6 @@
+// expect: 2:16: the texture's parameter 'out' could be written; a scene's arrays are const: const float* name
+float4 t(float out[4])
+{
+    out[0] = 1.0f;
+    return (float4)(0.0f);
+}

@@ -1,0 +1,3 @@
+// expect: 2:60: arithmetic with pointers and arrays; use an index: name[i]
+float f(const float* a, const float* b) { return (float)(a - b); }
+float4 t(float2 uv) { return (float4)(uv, 0.0f, 1.0f); }

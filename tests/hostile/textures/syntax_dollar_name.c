@@ -1,0 +1,6 @@
+// expect: 4:11: 'a$b' is not a name that every compiler takes; use the letters a to z, digits and _
+float4 t(float x, int n)
+{
+    float a$b = x;
+    return (float4)(0.0f);
+}

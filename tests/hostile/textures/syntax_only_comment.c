@@ -1,0 +1,2 @@
+// expect: 1:1: the file defines no function; a texture is a function that returns a colour
+// nothing here

@@ -1,0 +1,6 @@
+// expect: 4:10: 'double' is not available on every device; use float
+float4 t(float x, int n)
+{
+    long double d = x;
+    return (float4)(0.0f);
+}

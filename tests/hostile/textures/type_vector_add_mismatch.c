@@ -1,0 +1,6 @@
+// expect: 4:31: implicit conversions between vector types ('float3' (vector of 3 'float' values) and 'float4' (vector of 4 'float' values)) are not permitted; convert it: convert_float3(v), v.xyz, (float4)(v, 1.0f)
+float4 t(float x, int n)
+{
+    float3 v = (float3)(1.0f) + (float4)(1.0f);
+    return (float4)(0.0f);
+}
