@@ -54,5 +54,5 @@ float4 userProc(float3 class, float PI, int n, uint u)
     v.lo = v.hi; v.even = v.odd; float8 f8 = 0; f8.s7 = 2; f8.lo = v; v = f8.hi;
     float q1 = (float)n / u, q2 = n ? 1 : 2.5; q1 = fmax(q1, 0), q2 = pow(q2, 2); q1 = max(q1, 0.0f) + min(3, n);
     v = (float4)(v.xy, (float2)(0)) + (float4)(class, 1) + (float4)(1);
-    return v + (float4)(s, bits(1)) + f0() + c.w[k] + z[0][0] + d.at.x + si + fr + fo.x + fw.y + (n, 3) + hypot(1.0f, 2.0f) + q1 + q2 + smoothstep(1, 0, 0.5) + abs(n) + (INFINITY > FLT_MAX) + isnan((float)NAN) + vv + yes + big + bb + ch + sh + uu + m4 + i2.x;
+    return v + (float4)(s, bits(1)) + f0() + c.w[k] + z[0][0] + d.at.x + si + fr + fo.x + fw.y + (n, 3) + hypot(1.0f, 2.0f) + q1 + q2 + smoothstep(1, 0, 0.5) + abs(n) + (INFINITY > FLT_MAX) + isnan((float)NAN) + vv + yes + (big & 7) + (bb & 7) + ch + sh + (uu & 255) + m4 + i2.x;
 }

@@ -9,5 +9,5 @@ float4 main(const SurfaceInfo* sHit, sampler2D tex, const float3 colors[3], cons
   float4 c = texture2D(tex, uv, TEX_CLAMP_U);
   float3x3 m; m.row[0] = n; m.row[1] = pos; m.row[2] = make_float3(1, 2, 3);
   c.xyz = mul3x3x3(m, to_float3(c)) * mix(0.0, 1.0, ao) + fract(pos);
-  return to_float4(c.xyz, 1.0f) + ids[0] + k[2];
+  return to_float4(c.xyz, 1.0f) + (ids[0] & 7) + k[2];
 }
