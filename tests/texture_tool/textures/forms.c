@@ -22,6 +22,7 @@ enum Mode next(enum Mode m) { switch (m) { case FIRST: return SECOND; case SECON
 float f0() { return 1; }
 float4 userProc(float3 class, float PI, int n, uint u)
 {
+    n = (n >> 22) & 31; u = (u >> 22) & 31;
     float4 v = 1.0f + readAttr("WorldPos").x;
     float2 new = (float2)(u, n);
     v *= 2.0; v += u; v = 2 * v; v = v * n;
