@@ -45,5 +45,6 @@ if(WITH_OPENCL)
   house_test(library_parity_test LIBRARIES common library_loops_scalar library_loops_vector OpenCL::OpenCL
     nlohmann_json::nlohmann_json SOURCES library_parity_test.cpp ${LIBRARY_KERNELS})
   target_compile_definitions(library_parity_test PRIVATE LIBRARY_KERNELS="${LIBRARY_KERNELS}"
-    LIBRARY_GENERATED="${LIBRARY_GENERATED}" LIBRARY_SOURCES="${LIBRARY_SOURCES}")
+    LIBRARY_GENERATED="${LIBRARY_GENERATED}" LIBRARY_SOURCES="${LIBRARY_SOURCES}"
+    LIBRARY_MANUAL="${PROJECT_SOURCE_DIR}/docs/texture-library.md")
 endif()

@@ -155,6 +155,17 @@ TEST_P(LibraryTexture, DescribesItsArgumentsInItsHeader)
     EXPECT_TRUE(description_of(GetParam())["warnings"].empty());
 }
 
+TEST_P(LibraryTexture, IsInTheManual)
+{
+    const std::string manual = text_of(LIBRARY_MANUAL);
+    const size_t start = manual.find("## " + GetParam() + "\n");
+    ASSERT_NE(start, std::string::npos);
+    const std::string section = manual.substr(start, manual.find("\n## ", start) - start);
+    for (const HeaderArgument& argument : header_of(GetParam()))
+        EXPECT_NE(section.find("| `" + argument.name + "` | " + argument.type), std::string::npos)
+            << argument.name;
+}
+
 TEST_P(LibraryTexture, GivesColorsThatReflectLessThanTheyReceive)
 {
     const Results results = run(loops_scalar().at(GetParam()), make_hits(), region_of(GetParam()));

@@ -25,8 +25,8 @@ float4 scratches(float scale, float width, float amount, float3 base, float3 scr
     const float bend = perlin2_seeded(p * 0.9f, 11u);
     const float broken = perlin2_seeded(p * 1.7f, 21u);
     const float2 q = make_float2(p.x + 0.10f * bend, p.y - 0.07f * bend);
-    const float one = scratch_layer(q, make_float2(0.8090f, 0.5878f), width, 31u);
-    const float two = scratch_layer(q, make_float2(-0.4695f, 0.8829f), 0.7f * width, 41u);
+    const float one = scratch_layer(q, make_float2(0.9135f, 0.4067f), width, 31u);
+    const float two = scratch_layer(q, make_float2(0.1908f, 0.9816f), 0.7f * width, 41u);
     const float many = 2.0f * amount - 1.0f;
     const float lines_one = one * smoothstep(-0.12f, 0.30f, many + broken);
     const float lines_two = two * smoothstep(-0.12f, 0.30f, many - broken);
