@@ -5,8 +5,8 @@
 
 #include "platform.h"
 
+#include "common/user_language/common_functions.h"
 #include "common/user_language/integer_functions.h"
-#include "common/user_language/scalar_functions.h"
 
 #include "common/user_language/as_cpp/vectors.h"
 

@@ -4,8 +4,8 @@
 #define TX_NEW(type, ...) ((type)(__VA_ARGS__))
 #define TX_TABLE(type) __constant const type*
 
+#include "common/user_language/common_functions.h"
 #include "common/user_language/integer_functions.h"
-#include "common/user_language/scalar_functions.h"
 
 SHARED float tx_fma_float(float a, float b, float c) { return fma(a, b, c); }
 

@@ -102,6 +102,7 @@
         return TX_EACH_3_##n(T##n, tx_pick_##T##_##C, a, b, c);   \
     }
 
+// clang-format off
 #define TX_ROWS_OF_WIDTH(n)                                                                        \
     TX_FLOAT_1(TX_F1_##n)                                                                          \
     TX_FLOAT_2(TX_F2_##n)                                                                          \
@@ -109,8 +110,11 @@
     TX_FLOAT_INT(TX_FI_##n)                                                                        \
     TX_TEST_1(TX_T1_##n)                                                                           \
     TX_TEST_2(TX_T2_##n)                                                                           \
-    TX_INT_2(TX_I2_##n) TX_UINT_2(TX_U2_##n) TX_INT_3(TX_I3_##n) TX_INT_3(TX_U3_##n) TX_CONVERT(   \
-        ilogb, int, float, n) TX_CONVERT(nan, float, uint, n) TX_CONVERT(abs, uint, int, n)        \
+    TX_INT_2(TX_I2_##n)                                                                            \
+    TX_UINT_2(TX_U2_##n)                                                                           \
+    TX_INT_3(TX_I3_##n)                                                                            \
+    TX_INT_3(TX_U3_##n)                                                                            \
+    TX_CONVERT(ilogb, int, float, n) TX_CONVERT(nan, float, uint, n) TX_CONVERT(abs, uint, int, n) \
         TX_CONVERT(abs, uint, uint, n) TX_CONVERT(popcount, int, int, n) TX_CONVERT(               \
             popcount, uint, uint, n) TX_CONVERT(clz, int, int, n) TX_CONVERT(clz, uint, uint, n)   \
             TX_CAST(as, int, float, n) TX_CAST(as, uint, float, n) TX_CAST(as, float, int, n)      \
@@ -158,6 +162,7 @@
         *exponent = TX_EACH_1_##n(int##n, tx_exponent_float, a);                                   \
         return TX_EACH_1_##n(float##n, tx_significand_float, a);                                   \
     }
+// clang-format on
 
 // A row knows its name only: a macro for each width.
 #define TX_F1_2(name) TX_F1(name, 2)
