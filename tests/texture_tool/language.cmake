@@ -35,3 +35,5 @@ if(WITH_OPENCL)
   target_link_libraries(foreign_opencl PRIVATE OpenCL::OpenCL)
   target_compile_options(foreign_opencl PRIVATE ${HOUSE_WARNINGS} -Wno-ignored-attributes)
 endif()
+add_test(NAME texture_tool_tx_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/tx_test.py
+  $<TARGET_FILE:diptych-texture> ${PROJECT_SOURCE_DIR})
