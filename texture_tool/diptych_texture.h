@@ -77,16 +77,15 @@ float diptych_occlusion(const char* where, float distance);
     static inline float dt_##name(float x) { return name##f(x); }
 #define DIPTYCH_C2(name) \
     static inline float dt_##name(float x, float y) { return name##f(x, y); }
-DIPTYCH_C1(sin)
-DIPTYCH_C1(cos)
-DIPTYCH_C1(tan)
-DIPTYCH_C1(asin)
-DIPTYCH_C1(acos) DIPTYCH_C1(atan) DIPTYCH_C1(sinh) DIPTYCH_C1(cosh) DIPTYCH_C1(tanh) DIPTYCH_C1(exp)
-    DIPTYCH_C1(exp2) DIPTYCH_C1(log) DIPTYCH_C1(log2) DIPTYCH_C1(log10) DIPTYCH_C1(sqrt)
-        DIPTYCH_C1(cbrt) DIPTYCH_C1(fabs) DIPTYCH_C1(floor) DIPTYCH_C1(ceil) DIPTYCH_C1(trunc)
-            DIPTYCH_C1(round) DIPTYCH_C1(rint) DIPTYCH_C2(atan2) DIPTYCH_C2(pow) DIPTYCH_C2(fmax)
-                DIPTYCH_C2(fmin) DIPTYCH_C2(fmod) DIPTYCH_C2(copysign) DIPTYCH_C2(fdim)
-                    DIPTYCH_C2(hypot) static inline float dt_rsqrt(float x)
+// clang-format off
+DIPTYCH_C1(sin) DIPTYCH_C1(cos) DIPTYCH_C1(tan) DIPTYCH_C1(asin) DIPTYCH_C1(acos) DIPTYCH_C1(atan)
+DIPTYCH_C1(sinh) DIPTYCH_C1(cosh) DIPTYCH_C1(tanh) DIPTYCH_C1(exp) DIPTYCH_C1(exp2)
+DIPTYCH_C1(log) DIPTYCH_C1(log2) DIPTYCH_C1(log10) DIPTYCH_C1(sqrt) DIPTYCH_C1(cbrt)
+DIPTYCH_C1(fabs) DIPTYCH_C1(floor) DIPTYCH_C1(ceil) DIPTYCH_C1(trunc) DIPTYCH_C1(round)
+DIPTYCH_C1(rint) DIPTYCH_C2(atan2) DIPTYCH_C2(pow) DIPTYCH_C2(fmax) DIPTYCH_C2(fmin)
+DIPTYCH_C2(fmod) DIPTYCH_C2(copysign) DIPTYCH_C2(fdim) DIPTYCH_C2(hypot)
+    // clang-format on
+    static inline float dt_rsqrt(float x)
 {
     return 1.0f / sqrtf(x);
 }
