@@ -48,3 +48,6 @@ if(WITH_OPENCL)
     LIBRARY_GENERATED="${LIBRARY_GENERATED}" LIBRARY_SOURCES="${LIBRARY_SOURCES}"
     LIBRARY_MANUAL="${PROJECT_SOURCE_DIR}/docs/texture-library.md")
 endif()
+
+add_test(NAME library_foreign_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/library_foreign_test.py
+  ${PROJECT_SOURCE_DIR})
