@@ -2,6 +2,7 @@
 
 #include "common/as_cpp/path_rows.hpp"
 #include "kernels_cpu/bounce_stages.hpp"
+#include "kernels_cpu/texture_rays.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -116,6 +117,8 @@ void Chunk::run_stage(Stage stage, int count)
         rays += embree_->intersect(scene_, view_, count, bounce_ == 0);
     else if (stage == STAGE_occlusion)
         shadow_rays += embree_->occlusion(scene_, view_, count);
+    else if (stage == STAGE_trace_texture_rays)
+        shadow_rays += trace_texture_rays(*embree_, scene_, view_, count);
     else if (stage == STAGE_evaluate_textures)
         scene_.textures->evaluate(scene_, view_, 0, count);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

@@ -2,6 +2,7 @@
 
 #include "common/as_cpp/path_rows.hpp"
 #include "kernels_cpu/bounce_stages.hpp"
+#include "kernels_cpu/texture_rays.hpp"
 
 #include <algorithm>
 
@@ -57,6 +58,8 @@ void StageTracer::run_stage(Stage stage, int bounce)
         embree_->intersect(scene_, view_, paths_, bounce == 0);
     else if (stage == STAGE_occlusion)
         embree_->occlusion(scene_, view_, paths_);
+    else if (stage == STAGE_trace_texture_rays)
+        trace_texture_rays(*embree_, scene_, view_, paths_);
     else if (stage == STAGE_evaluate_textures)
         scene_.textures->evaluate(scene_, view_, 0, paths_);
 }

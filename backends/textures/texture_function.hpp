@@ -11,7 +11,8 @@ struct TextureArgument {
     std::string name;
     std::string type;  // of a value or an element: float, int2, sam2D ...
     bool is_array = false;
-    int length = 0;  // of an array, as declared; 0: as long as the scene makes it
+    int length = 0;               // of an array, as declared; 0: as long as the scene makes it
+    std::string default_value{};  // JSON, as the file's comment says; empty: none
 };
 
 enum class Hemisphere { upper, lower, both };
@@ -34,6 +35,7 @@ struct TextureFunction {
     std::vector<OcclusionRequest> occlusion;
     unsigned attributes = 0;  // mask of ATTRIBUTE_*
     std::vector<std::string> warnings;
+    std::string description;  // by the tool, in JSON
 };
 
 // One use of a node of the graph by a material: its arguments' region.

@@ -33,7 +33,9 @@ SHARED float texture_openness(const Scene* scene, const Paths* paths, int i, Tex
     int open = 0;
     for (int ray = 0; ray < rays; ++ray) {
         const TextureRay r = texture_ray(scene, paths, i, place, number, request.hemisphere, ray);
-        const uint seed = texture_ray_seed(scene, paths, i, number, ray);
+        const uint seed = alpha_seed(scene->settings[0].seed, get_pixel(paths, i),
+                                     texture_ray_sample(get_sample(paths, i), number, ray),
+                                     get_depth(paths, i), 1);
         int is_occluded;
         if (request.is_same_object)
             is_occluded = bvh_occluded_by_object(scene, r.origin, r.direction, request.distance,

@@ -78,9 +78,9 @@ SHARED TextureRay texture_ray(const Scene* scene, const Paths* paths, int i, Tex
     return result;
 }
 
-SHARED uint texture_ray_seed(const Scene* scene, const Paths* paths, int i, int request, int ray)
+// In place of the path's sample number, for what the ray meets of surfaces with holes
+// (common/alpha.h).
+SHARED int texture_ray_sample(int sample, int request, int ray)
 {
-    const uint seed = alpha_seed(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i),
-                                 get_depth(paths, i), 1);
-    return hash_pair(seed, (uint)(request * 256 + ray + 1));
+    return (int)((uint)sample ^ ((uint)(request * 256 + ray + 1) * 0x9e3779b1u));
 }

@@ -1,5 +1,7 @@
 #include "host/commands/scene_flags.hpp"
 
+#include "common/textures/procedural.h"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -84,6 +86,17 @@ LoadOptions load_options_from(const SceneFlags& flags)
     return load;
 }
 
+// Unlit surfaces show their vertices' colours too, which a texture's value must do without.
+void leave_solo(SceneData& scene)
+{
+    if ((scene.effects & EFFECT_VERTEX_COLOR) == 0) return;
+    if ((scene.textures.attributes & ATTRIBUTE_VertexColor) == 0)
+        scene.effects &= ~unsigned(EFFECT_VERTEX_COLOR);
+    else
+        scene.notices.push_back("--solo: values are multiplied by the vertex colours that the "
+                                "texture reads");
+}
+
 }  // namespace
 
 std::pair<int, int> parse_size(const std::string& text)
@@ -150,6 +163,16 @@ void add_view_flags(CLI::App& app, SceneFlags& flags)
         ->capture_default_str();
     app.add_option("--env-scale", flags.load.environment_scale, "Multiplies its radiance")
         ->capture_default_str();
+    app.add_option("--texture", flags.load.textures,
+                   "Let a function of a C file, or a texture of the library, give what a material "
+                   "reads: MATERIAL.SLOT=FILE.c[:FUNCTION]; slots: baseColor, metallicRoughness, "
+                   "normal, emissive, specular, specularColor; * is every material")
+        ->allow_extra_args(false);
+    app.add_option("--set", flags.load.texture_values,
+                   "A value for an argument of a procedural texture: NODE.ARGUMENT=JSON")
+        ->allow_extra_args(false);
+    app.add_option("--solo", flags.load.solo,
+                   "Show the colour that this texture node gives, as it is, and nothing else");
     app.add_flag("--allow-outside", flags.load.allow_outside,
                  "Let the scene name files outside its own folder");
 }
@@ -181,21 +204,31 @@ void add_device_options(CLI::App& app, DeviceFlags& flags)
         "OpenCL: allow contraction and native functions; pictures no longer match to the bit");
     app.add_flag("--debug-kernels", flags.options.debug_kernels,
                  "Run twin from kernels built for a debugger; the same picture, slowly");
+    app.add_flag("--debug-textures", flags.options.debug_textures,
+                 "Compile procedural textures for a debugger; the same picture, slowly");
+    app.add_option("--generated-dir", flags.options.generated_dir,
+                   "Also write the code that is generated for procedural textures to this folder");
 }
 
 SceneData load_from_flags(const SceneFlags& flags)
 {
-    const LoadOptions load = load_options_from(flags);
+    LoadOptions load = load_options_from(flags);
+    if (!load.solo.empty()) load.environment = "none";
     if (flags.samples < 1 || flags.samples > most_samples)
         refuse("--samples", std::to_string(flags.samples),
                fmt::format("out of range; give 1 to {}", most_samples));
     const int bounces = parse_bounces(flags.bounces);
     const int filter = parse_filter(flags.filter);
+    if (flags.scene.empty() &&
+        !(load.textures.empty() && load.texture_values.empty() && load.solo.empty()))
+        throw std::runtime_error("--texture, --set, --solo: only for a scene's file; name one");
     SceneData scene = flags.scene.empty() ? demo_scene(load) : load_scene(flags.scene, load);
+    if (!load.solo.empty()) leave_solo(scene);
     Settings& settings = scene.settings.at(0);
     settings.seed = flags.seed;
-    settings.max_bounces = bounces;
+    settings.max_bounces = load.solo.empty() ? bounces : 0;
     settings.filter = filter;
+    settings.samples = flags.samples;
     settings.width = load.width;
     settings.height = load.height;
     return scene;

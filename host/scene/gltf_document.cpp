@@ -177,6 +177,16 @@ void hide_implied_indices(json& document)
     }
 }
 
+// The extension for procedural textures of a document or material; null: it has none.
+json procedural(const json& holder)
+{
+    const auto extensions = holder.find("extensions");
+    if (extensions == holder.end() || !extensions->is_object()) {
+        return nullptr;
+    }
+    return extensions->value("DIPTYCH_procedural_texture", json());
+}
+
 }  // namespace
 
 GltfDocument::GltfDocument(const fs::path& file, bool allow_outside)
@@ -189,6 +199,11 @@ GltfDocument::GltfDocument(const fs::path& file, bool allow_outside)
     parse(container.text);
 }
 
+const json& GltfDocument::textures_of(int material) const
+{
+    return material_textures_.at(size_t(material));
+}
+
 void GltfDocument::parse(const std::string& text)
 {
     json document;
@@ -198,6 +213,12 @@ void GltfDocument::parse(const std::string& text)
         notices_ = check_extensions(names(document, "extensionsUsed"),
                                     names(document, "extensionsRequired"));
         note_motion(raw, notices_);
+        textures_ = procedural(raw);
+        if (raw.contains("materials")) {
+            for (const json& material : raw["materials"]) {
+                material_textures_.push_back(procedural(material));
+            }
+        }
     }
     hide_implied_indices(document);
     const auto version = document["asset"]["version"].get<std::string>();

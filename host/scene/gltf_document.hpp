@@ -4,6 +4,7 @@
 #include "host/scene/picture.hpp"
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <tiny_gltf.h>
@@ -28,6 +29,13 @@ public:
     std::span<const std::uint8_t> buffer_view(int view);
     // Image `image` of the file; `where` names its user in errors.
     Picture image(int image, const std::string& where, size_t max_pixels);
+    // The extension DIPTYCH_procedural_texture as it stands in the file, unchecked: that of the
+    // document, and that of each material; null where there is none.
+    const nlohmann::json& textures() const { return textures_; }
+    const nlohmann::json& textures_of(int material) const;
+    int material_count() const { return int(material_textures_.size()); }
+    // The file that a relative URI names; it may not leave the folder unless allowed.
+    std::filesystem::path resolved(const std::string& uri, const std::string& where) const;
     void release_buffers() { buffers_.clear(); }
 
     // About extensions that are used but not simulated, animations, skins, morph targets.
@@ -42,11 +50,12 @@ private:
 
     void parse(const std::string& text);
     const std::vector<std::uint8_t>& buffer(int index);
-    std::filesystem::path resolved(const std::string& uri, const std::string& where) const;
 
     std::filesystem::path folder_;
     bool allow_outside_;
     tinygltf::Model model_;
+    nlohmann::json textures_;
+    std::vector<nlohmann::json> material_textures_;
     std::vector<std::string> notices_;
     std::vector<Source> buffer_sources_;
     std::vector<Source> image_sources_;

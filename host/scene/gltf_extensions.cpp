@@ -24,6 +24,7 @@ constexpr Extension extensions[] = {
     {"KHR_lights_punctual", ExtensionSupport::simulated},
     {"EXT_mesh_gpu_instancing", ExtensionSupport::simulated},
     {"EXT_texture_webp", ExtensionSupport::simulated},
+    {"DIPTYCH_procedural_texture", ExtensionSupport::simulated},
     {"KHR_materials_variants", ExtensionSupport::ignored},
     {"KHR_xmp", ExtensionSupport::ignored},
     {"KHR_xmp_json_ld", ExtensionSupport::ignored},

@@ -8,6 +8,8 @@
 
 namespace diptych {
 
+class TextureReader;
+
 class GltfLoader {
 public:
     GltfLoader(GltfDocument& document, const LoadOptions& options, SceneBuilder& scene)
@@ -45,6 +47,11 @@ private:
     void read_images();
     int image_of(int texture) const;
 
+    // gltf_textures.cpp
+    void add_textures();
+    TextureInput texture_input(const nlohmann::json& value, const TextureReader& reader,
+                               const std::string& where, int depth) const;
+
     // gltf_meshes.cpp
     void add_meshes();
     std::vector<MeshPart> mesh_parts(int mesh);
@@ -61,7 +68,8 @@ private:
     std::vector<NodePlacement> placements_;
     std::vector<NodeCamera> cameras_;
     std::vector<MaterialInput> materials_;  // images still numbered as in the file
-    std::vector<int> mesh_numbers_;         // in the builder; -1: not placed
+    std::vector<TextureNode> texture_nodes_;
+    std::vector<int> mesh_numbers_;  // in the builder; -1: not placed
     std::vector<char> node_visited_;
     size_t nodes_of_two_parents_ = 0;
     size_t points_and_lines_ = 0;

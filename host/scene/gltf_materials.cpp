@@ -166,33 +166,42 @@ void GltfLoader::read_images()
         }
     }
     std::map<int, int> numbers;  // of images of the file, in the builder
+    const auto resolve = [&](TextureUse& use, const std::string& user) {
+        if (use.image < 0) {
+            return;
+        }
+        const int texture = use.image;
+        const int image = image_of(texture);
+        if (image < 0) {
+            const bool is_basis =
+                model_.textures[size_t(texture)].extensions.count("KHR_texture_basisu") > 0;
+            throw SceneError(fmt::format(
+                "textures[{}]{}: {}; export it with PNG or JPEG images", texture, user,
+                is_basis ? "has only a KTX2 image (KHR_texture_basisu), which cannot be read"
+                         : "has no image"));
+        }
+        if (!numbers.count(image)) {
+            numbers[image] =
+                scene_.add_image(document_.image(image, user, options_.max_image_pixels));
+        }
+        use.image = numbers[image];
+    };
+    for (TextureNode& node : texture_nodes_) {
+        for (auto& [name, value] : node.arguments) {
+            for (TextureUse& use : value.images) {
+                resolve(use, fmt::format(", of texture node \"{}\"", node.name));
+            }
+        }
+    }
     for (size_t k = 0; k < materials_.size(); ++k) {
         MaterialInput& m = materials_[k];
         for (TextureUse* use :
              {&m.base_texture, &m.metallic_roughness_texture, &m.normal_texture,
               &m.emission_texture, &m.specular_texture, &m.specular_color_texture}) {
-            const int texture = use->image;
             if (!is_used[k]) {
                 use->image = -1;
             }
-            if (use->image < 0) {
-                continue;
-            }
-            const int image = image_of(texture);
-            const std::string user = fmt::format(", of material \"{}\"", m.name);
-            if (image < 0) {
-                const bool is_basis =
-                    model_.textures[size_t(texture)].extensions.count("KHR_texture_basisu") > 0;
-                throw SceneError(fmt::format(
-                    "textures[{}]{}: {}; export it with PNG or JPEG images", texture, user,
-                    is_basis ? "has only a KTX2 image (KHR_texture_basisu), which cannot be read"
-                             : "has no image"));
-            }
-            if (!numbers.count(image)) {
-                numbers[image] =
-                    scene_.add_image(document_.image(image, user, options_.max_image_pixels));
-            }
-            use->image = numbers[image];
+            resolve(*use, fmt::format(", of material \"{}\"", m.name));
         }
     }
 }

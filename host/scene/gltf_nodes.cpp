@@ -288,11 +288,15 @@ void GltfLoader::run()
     visit_nodes();
     choose_camera();
     add_materials();
+    add_textures();
     add_meshes();
     read_images();
     document_.release_buffers();
     for (const MaterialInput& material : materials_) {
         scene_.add_material(material);
+    }
+    for (TextureNode& node : texture_nodes_) {
+        scene_.add_texture_node(std::move(node));
     }
     for (const NodePlacement& placement : placements_) {
         scene_.place(mesh_numbers_[size_t(placement.mesh)], placement.to_world, placement.name);

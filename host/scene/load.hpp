@@ -23,6 +23,11 @@ struct LoadOptions {
     bool allow_outside = false;  // URIs may leave the scene's folder
     int scene_index = -1;        // of the file's scenes; -1: its default
     unsigned disabled_effects = 0;
+    // Procedural textures beside those of the file: "MATERIAL.SLOT=FILE.c[:FUNCTION]", and values
+    // of arguments, "NODE.ARGUMENT=JSON" (docs/textures.md).
+    std::vector<std::string> textures{};
+    std::vector<std::string> texture_values{};
+    std::string solo{};  // show what this texture node gives, unlit, and nothing else
     size_t max_image_pixels = size_t(1) << 28;
     size_t copied_triangles = 64;  // SceneBuilder::copy_small_meshes; 0: every mesh is stored once
 };
