@@ -1,9 +1,11 @@
 // The command line: each command is a file in host/commands.
 #include "host/commands/compare_backends.hpp"
+#include "host/commands/debug_command.hpp"
 #include "host/commands/devices_command.hpp"
 #include "host/commands/explain_command.hpp"
 #include "host/commands/render_command.hpp"
 #include "host/commands/selftest_command.hpp"
+#include "host/commands/texture_command.hpp"
 #include "host/image/compare_cli.hpp"
 
 #include <CLI/CLI.hpp>
@@ -58,6 +60,11 @@ int run(int count, char** arguments)
     const CLI::App* devices_command = add_devices_command(app);
     SelftestCommand selftest;
     const CLI::App* selftest_command = add_selftest_command(app, selftest);
+    TextureCommand texture;
+    const CLI::App* texture_command = add_texture_command(app, texture);
+    DebugCommand debug;
+    debug.words.assign(arguments, arguments + count);
+    const CLI::App* debug_command = add_debug_command(app, debug);
     try {
         app.parse(count, arguments);
     } catch (const CLI::ParseError& error) {
@@ -68,6 +75,8 @@ int run(int count, char** arguments)
     if (explain_command->parsed()) return run_explain_command(explain);
     if (devices_command->parsed()) return run_devices_command();
     if (selftest_command->parsed()) return run_selftest_command(selftest);
+    if (texture_command->parsed()) return run_texture_command(*texture_command, texture);
+    if (debug_command->parsed()) return run_debug_command(debug);
     if (compare_command->parsed() && !compare.compare.backends.empty())
         return run_compare_backends(compare, std::cout);
     if (compare_command->parsed())

@@ -36,20 +36,6 @@ image::View parse_view(const std::string& text)
     throw std::runtime_error("--view " + text + ": no such view; use standard, neutral or filmic");
 }
 
-std::optional<Pixel> parse_pixel(const std::string& text, const std::string& size)
-{
-    if (text.empty()) return std::nullopt;
-    const auto [width, height] = parse_size(size);
-    Pixel pixel{};
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%d,%d%c", &pixel.x, &pixel.y, &rest) != 2)
-        throw std::runtime_error("--pixel " + text + ": not a pixel; give X,Y from the upper left");
-    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= width || pixel.y >= height)
-        throw std::runtime_error(fmt::format(
-            "--pixel {}: outside the picture; it has {} x {} pixels", text, width, height));
-    return pixel;
-}
-
 void print_pixel(const image::Picture& picture, const Pixel& pixel)
 {
     const image::Layer& beauty = image::beauty_of(picture);
@@ -79,6 +65,20 @@ std::string fault_text(const Faults& faults, const std::optional<FaultPlace>& pl
 }
 
 }  // namespace
+
+std::optional<Pixel> parse_pixel(const std::string& text, const std::string& size)
+{
+    if (text.empty()) return std::nullopt;
+    const auto [width, height] = parse_size(size);
+    Pixel pixel{};
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%d,%d%c", &pixel.x, &pixel.y, &rest) != 2)
+        throw std::runtime_error("--pixel " + text + ": not a pixel; give X,Y from the upper left");
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= width || pixel.y >= height)
+        throw std::runtime_error(fmt::format(
+            "--pixel {}: outside the picture; it has {} x {} pixels", text, width, height));
+    return pixel;
+}
 
 CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
 {

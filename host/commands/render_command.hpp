@@ -3,6 +3,7 @@
 
 #include "host/commands/scene_flags.hpp"
 #include "host/image/image.hpp"
+#include "host/render/render.hpp"
 
 #include <optional>
 #include <vector>
@@ -22,6 +23,9 @@ struct RenderCommand {
     bool is_reproducible = false;
     std::string command_line;
 };
+
+// "12,20": a pixel of a picture of that size; none for an empty text. Throws std::runtime_error.
+std::optional<Pixel> parse_pixel(const std::string& text, const std::string& size);
 
 CLI::App* add_render_command(CLI::App& app, RenderCommand& command);
 

@@ -1,0 +1,44 @@
+// What an evaluation of one texture costs, and where its values differ.
+#pragma once
+
+#include "backends/backend.hpp"
+#include "host/commands/texture_file.hpp"
+
+namespace diptych {
+
+// Of one backend.
+struct TextureTiming {
+    std::string backend;
+    std::string device;
+    double nanoseconds = 0;         // an evaluation, the stage around it included
+    double stage_nanoseconds = 0;   // of a texture that is constant
+    double ray_nanoseconds = 0;     // of its occlusion rays on a plane without surroundings
+    double largest_difference = 0;  // of a component, to twin
+    size_t differing = 0;           // evaluations that are not bit for bit twin's
+    size_t compared = 0;
+    std::string failure;  // why there is no measurement; empty: there is one
+};
+
+// Each backend on one thread (OpenCL: the device's time). Throws std::runtime_error for a texture
+// or a value that is refused; a backend that does not work says so in its row.
+std::vector<TextureTiming> time_texture(const TextureFile& file,
+                                        const std::vector<std::string>& values,
+                                        const std::vector<std::string>& backends,
+                                        const BackendOptions& options);
+
+// What a compiler for GPUs says of the texture stage.
+struct DeviceCost {
+    std::string target;  // sm_80, gfx900
+    int registers = 0;
+    int stack_bytes = 0;
+    int spill_bytes = 0;  // sm_80 only
+    int code_bytes = 0;   // of the stage's machine code; 0: unknown
+    std::string missing;  // which program or library is not there; empty: measured
+};
+std::vector<DeviceCost> device_costs(const SceneData& scene);
+
+// All of it as text. `backends`: names with commas, or empty for all.
+std::string cost_card(const TextureFile& file, const std::vector<std::string>& values,
+                      const std::string& backends, const BackendOptions& options);
+
+}  // namespace diptych

@@ -1,0 +1,214 @@
+// Registers, stack and code of the texture stage on GPUs that need not be there: clang with libclc
+// compiles it, ptxas of a CUDA toolkit and clang's assembly say what it takes. As ci/bench_kernels
+// does for all stages.
+#include "host/commands/texture_cost.hpp"
+
+#ifdef DIPTYCH_WITH_OPENCL
+
+#include "backends/kernel_sources.hpp"
+#include "backends/textures/subprocess.hpp"
+#include "backends/textures/texture_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <stdexcept>
+#include <unistd.h>
+
+namespace diptych {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ScratchFolder {
+public:
+    ScratchFolder()
+    {
+        std::string pattern = (fs::temp_directory_path() / "diptych-cost-XXXXXX").string();
+        if (!mkdtemp(pattern.data()))
+            throw std::runtime_error(pattern + ": cannot be made; free the disk");
+        path_ = pattern;
+    }
+    ~ScratchFolder()
+    {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    std::string operator/(const char* name) const { return (path_ / name).string(); }
+
+private:
+    fs::path path_;
+};
+
+std::string first_program(const std::vector<std::string>& names)
+{
+    for (const std::string& name : names)
+        if (const std::string found = find_program(name); !found.empty()) return found;
+    return "";
+}
+
+std::string clang()
+{
+    std::vector<std::string> names = {"clang"};
+    for (int version = 22; version >= 14; --version)
+        names.push_back("clang-" + std::to_string(version));
+    return first_program(names);
+}
+
+std::string library(const std::string& name)
+{
+    std::vector<std::string> folders = {"/usr/lib/clc", "/usr/share/clc", "/usr/local/lib/clc",
+                                        "/usr/local/share/clc"};
+    for (int version = 22; version >= 14; --version)
+        folders.push_back(fmt::format("/usr/lib/llvm-{}/share/clc", version));
+    for (const std::string& folder : folders)
+        if (fs::exists(folder + "/" + name)) return folder + "/" + name;
+    return "";
+}
+
+std::string text_of(const std::string& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+Finished compile(const std::string& source, const std::string& out, unsigned effects,
+                 const std::string& bitcode, const std::vector<std::string>& target)
+{
+    std::vector<std::string> command = {clang(),
+                                        "-x",
+                                        "cl",
+                                        "-cl-std=CL1.2",
+                                        "-Xclang",
+                                        "-finclude-default-header",
+                                        "-O3",
+                                        "-w",
+                                        "-S",
+                                        "-DFAULT=FAULT_none",
+                                        "-DGROUP_SIZE=64",
+                                        "-DEFFECTS=" + std::to_string(effects) + "u",
+                                        "-Xclang",
+                                        "-mlink-builtin-bitcode",
+                                        "-Xclang",
+                                        bitcode};
+    command.insert(command.end(), target.begin(), target.end());
+    command.insert(command.end(), {source, "-o", out});
+    return run_program(command);
+}
+
+// The first group of the pattern as a number, the largest of all matches; 0 when there is none.
+int largest(const std::string& text, const char* pattern)
+{
+    int value = 0;
+    const std::regex expression(pattern);
+    for (std::sregex_iterator at(text.begin(), text.end(), expression), end; at != end; ++at)
+        value = std::max(value, std::stoi((*at)[1]));
+    return value;
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+// The size of the section of machine code in what ptxas writes, an ELF file of 64 bits.
+int code_bytes(const std::string& elf)
+{
+    const auto word = [&](size_t at, int bytes) {
+        std::uint64_t value = 0;
+        for (int k = bytes - 1; k >= 0; --k)
+            value =
+                value << 8 | (at + size_t(k) < elf.size() ? std::uint8_t(elf[at + size_t(k)]) : 0u);
+        return size_t(value);
+    };
+    if (elf.size() < 64) return 0;
+    const size_t table = word(40, 8), entry = word(58, 2), count = word(60, 2);
+    const size_t names = word(table + entry * word(62, 2) + 24, 8);
+    size_t bytes = 0;
+    for (size_t k = 0; k < count && table + (k + 1) * entry <= elf.size(); ++k) {
+        const size_t section = table + k * entry;
+        const size_t name = names + word(section, 4);
+        if (name < elf.size() && elf.compare(name, 6, ".text.") == 0)
+            bytes += word(section + 32, 8);
+    }
+    return int(bytes);
+}
+
+DeviceCost nvidia(const std::string& source, unsigned effects, const ScratchFolder& folder)
+{
+    DeviceCost cost;
+    cost.target = "sm_80";
+    const std::string bitcode = library("nvptx64--nvidiacl.bc");
+    const std::string assembler = first_program({"ptxas", "/usr/local/cuda/bin/ptxas"});
+    if (clang().empty()) cost.missing = "no clang";
+    if (bitcode.empty()) cost.missing = "no libclc (Debian: libclc-14)";
+    if (assembler.empty()) cost.missing = "no ptxas (CUDA toolkit)";
+    if (!cost.missing.empty()) return cost;
+    const std::string out = folder / "kernel.ptx";
+    const Finished compiled =
+        compile(source, out, effects, bitcode,
+                {"-target", "nvptx64--nvidiacl", "-Xclang", "-target-cpu", "-Xclang", "sm_80",
+                 "-Xclang", "-target-feature", "-Xclang", "+ptx70"});
+    if (compiled.exit_code != 0) {
+        cost.missing = "clang: " + first_line(compiled.output);
+        return cost;
+    }
+    const std::string cubin = folder / "kernel.cubin";
+    const Finished assembled = run_program({assembler, "-v", "-arch=sm_80", out, "-o", cubin});
+    if (assembled.exit_code != 0) {
+        cost.missing = "ptxas: " + first_line(assembled.output);
+        return cost;
+    }
+    cost.registers = largest(assembled.output, "Used (\\d+) registers");
+    cost.stack_bytes = largest(assembled.output, "(\\d+) bytes stack frame");
+    cost.spill_bytes = largest(assembled.output, "(\\d+) bytes spill stores");
+    cost.code_bytes = code_bytes(text_of(cubin));
+    return cost;
+}
+
+DeviceCost amd(const std::string& source, unsigned effects, const ScratchFolder& folder)
+{
+    DeviceCost cost;
+    cost.target = "gfx900";
+    const std::string bitcode = library("amdgcn--amdhsa.bc");
+    if (clang().empty()) cost.missing = "no clang";
+    if (bitcode.empty()) cost.missing = "no libclc (Debian: libclc-14)";
+    if (!cost.missing.empty()) return cost;
+    const std::string out = folder / "kernel.s";
+    const Finished compiled = compile(source, out, effects, bitcode,
+                                      {"-target", "amdgcn--amdhsa", "-nogpulib", "-mcpu=gfx900"});
+    if (compiled.exit_code != 0) {
+        cost.missing = "clang: " + first_line(compiled.output);
+        return cost;
+    }
+    const std::string assembly = text_of(out);
+    cost.registers = largest(assembly, "; NumVgprs: (\\d+)");
+    cost.stack_bytes = largest(assembly, "; ScratchSize: (\\d+)");
+    cost.code_bytes = largest(assembly, "; codeLenInByte = (\\d+)");
+    return cost;
+}
+
+}  // namespace
+
+std::vector<DeviceCost> device_costs(const SceneData& scene)
+{
+    const ScratchFolder folder;
+    const std::string source = folder / "evaluate_textures.cl";
+    std::ofstream(source) << opencl_texture_program(scene, kernel_source(STAGE_evaluate_textures));
+    return {nvidia(source, scene.effects, folder), amd(source, scene.effects, folder)};
+}
+
+}  // namespace diptych
+
+#else
+
+namespace diptych {
+
+std::vector<DeviceCost> device_costs(const SceneData&) { return {}; }
+
+}  // namespace diptych
+
+#endif

@@ -1,0 +1,202 @@
+// `diptych debug`: a debugger stands in the texture's own file, sees its arguments and values, and
+// they are those of the picture.
+#include "tests/debugger/textured_scene.hpp"
+
+#include "tests/host/commands/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+
+using namespace diptych;
+
+namespace {
+
+std::vector<std::string> with_view(std::vector<std::string> words)
+{
+    words.insert(words.end(), painted_view.begin(), painted_view.end());
+    return words;
+}
+
+std::string why_no_debugger(const std::string& debugger)
+{
+    const Outcome version = run_program({debugger, "--version"});
+    if (version.exit_code != 0) return debugger + " is not installed";
+    if (debugger == "gdb") {
+        const Outcome trial = run_program({"gdb", "-batch", "-nx", "-ex", "run", "--args", "true"});
+        if (trial.text().find("exited normally") == std::string::npos)
+            return "gdb may not trace programs here: " + trial.text();
+    }
+    return "";
+}
+
+class DebugTexture : public testing::Test {
+protected:
+    void SetUp() override { write_painted_scene(folder_); }
+
+    Outcome debug(std::vector<std::string> more, const std::vector<std::string>& commands = {})
+    {
+        std::vector<std::string> words = with_view({"debug", folder_ / "scene.gltf"});
+        words.insert(words.end(), more.begin(), more.end());
+        for (const std::string& command : commands)
+            words.insert(words.end(), {"--execute", command});
+        return run_diptych(words, options());
+    }
+
+    // What the picture shows of a node, to the bit.
+    std::array<float, 3> solo(const std::string& node, const std::string& pixel,
+                              const std::string& backend)
+    {
+        const Outcome outcome =
+            run_diptych(with_view({"render", folder_ / "scene.gltf", "--solo", node, "--samples",
+                                   "1", "--pixel", pixel, "--quiet", "--backend", backend}),
+                        options());
+        std::array<float, 3> value{};
+        const size_t at = outcome.out.find(": ");
+        EXPECT_TRUE(at != std::string::npos && std::sscanf(outcome.out.c_str() + at, ": %f %f %f",
+                                                           &value[0], &value[1], &value[2]) == 3)
+            << outcome.text();
+        return value;
+    }
+
+    static std::array<float, 3> vector_after(const std::string& text, const std::string& words)
+    {
+        std::array<float, 3> value{};
+        const size_t at = text.find(words);
+        EXPECT_TRUE(at != std::string::npos &&
+                    std::sscanf(text.c_str() + at + words.size(), "{x = %f, y = %f, z = %f",
+                                &value[0], &value[1], &value[2]) == 3)
+            << words << " in\n"
+            << text;
+        return value;
+    }
+
+    RunOptions options() const
+    {
+        return {.seconds = 200,
+                .environment = {{"ASAN_OPTIONS", "detect_leaks=0"}},
+                .folder = folder_.path()};
+    }
+
+    TestFolder folder_;
+};
+
+std::string at_line(const std::string& text)
+{
+    return std::to_string(line_of(painted_source, text));
+}
+
+TEST_F(DebugTexture, GdbStopsAtALineOfTheFileWithTheValuesOfThePicture)
+{
+    if (const std::string why = why_no_debugger("gdb"); !why.empty()) GTEST_SKIP() << why;
+    const Outcome outcome =
+        debug({"--pixel", "12,8", "--texture", "paint", "--line", at_line("stripe * tint")},
+              {"info args", "print stripe", "finish"});
+    EXPECT_NE(outcome.out.find("paint.c:" + at_line("stripe * tint")), std::string::npos)
+        << outcome.text();
+    EXPECT_NE(outcome.out.find("scale = 7"), std::string::npos) << outcome.text();
+    const std::array<float, 3> tint = vector_after(outcome.out, "tint = ");
+    const std::array<float, 3> stripe = vector_after(outcome.out, "$1 = ");
+    EXPECT_EQ(tint, (std::array<float, 3>{0.5f, 0.75f, 1.0f}));
+    const std::array<float, 3> value = vector_after(outcome.out, "Value returned is $2 = ");
+    for (size_t c = 0; c < 3; ++c) EXPECT_EQ(value[c], stripe[c] * tint[c]) << outcome.text();
+    EXPECT_EQ(value, solo("paint", "12,8", "twin"));
+    EXPECT_EQ(value, solo("paint", "12,8", "opencl"));
+    EXPECT_GT(value[0], 0.0f);
+}
+
+// Two nodes call one function: the arguments tell which it is.
+TEST_F(DebugTexture, StopsForTheNodeThatWasNamed)
+{
+    if (const std::string why = why_no_debugger("gdb"); !why.empty()) GTEST_SKIP() << why;
+    const Outcome left = debug({"--pixel", "12,8", "--texture", "left"}, {"info args"});
+    EXPECT_NE(left.out.find("scale = 2"), std::string::npos) << left.text();
+    const Outcome paint = debug({"--pixel", "12,8", "--texture", "paint"}, {"info args"});
+    EXPECT_NE(paint.out.find("scale = 7"), std::string::npos) << paint.text();
+}
+
+TEST_F(DebugTexture, GdbStepsFromLineToLineAndIntoTheTexturesOwnFunctions)
+{
+    if (const std::string why = why_no_debugger("gdb"); !why.empty()) GTEST_SKIP() << why;
+    const Outcome outcome =
+        debug({"--pixel", "12,8", "--texture", "paint", "--line", at_line("stripes(place")},
+              {"print place", "break stripes", "continue", "next", "next", "print result",
+               "backtrace 2", "info breakpoints"});
+    EXPECT_NE(outcome.out.find("sin(p.x * scale)"), std::string::npos) << outcome.text();
+    EXPECT_NE(outcome.out.find("return result;"), std::string::npos) << outcome.text();
+    const std::array<float, 3> place = vector_after(outcome.out, "$1 = ");
+    const std::array<float, 3> result = vector_after(outcome.out, "$2 = ");
+    EXPECT_EQ(result[1], place[1]);
+    EXPECT_EQ(result[2], 0.25f);
+    EXPECT_NE(outcome.out.find("userProc ("), std::string::npos) << outcome.text();
+}
+
+TEST_F(DebugTexture, TX_13_BreakpointsTakeTheUsersOwnNames)
+{
+    if (const std::string why = why_no_debugger("gdb"); !why.empty()) GTEST_SKIP() << why;
+    const Outcome outcome =
+        debug({"--pixel", "12,8", "--texture", "paint"}, {"break userProc", "info breakpoints"});
+    EXPECT_NE(outcome.out.find("paint.c, line " + at_line("readAttr")), std::string::npos)
+        << outcome.text();
+}
+
+TEST_F(DebugTexture, LldbStopsThereToo)
+{
+    if (const std::string why = why_no_debugger("lldb"); !why.empty()) GTEST_SKIP() << why;
+    const Outcome outcome = debug({"--pixel", "12,8", "--texture", "paint", "--debugger", "lldb",
+                                   "--line", at_line("stripe * tint")},
+                                  {"frame variable scale tint stripe", "finish"});
+    EXPECT_NE(outcome.out.find("paint.c:" + at_line("stripe * tint")), std::string::npos)
+        << outcome.text();
+    EXPECT_NE(outcome.out.find("scale = 7"), std::string::npos) << outcome.text();
+}
+
+TEST_F(DebugTexture, PrintsTheCommandAndWritesALaunchFile)
+{
+    const Outcome shown = debug({"--pixel", "12,8", "--texture", "paint", "--print"});
+    EXPECT_EQ(shown.exit_code, 0) << shown.text();
+    EXPECT_EQ(shown.out.find("gdb "), 0u) << shown.out;
+    for (const char* word : {"--args", "--pixel 12,8", "--debug-textures", "--backend twin",
+                             "user_language::t0::userProc", "--filter box"})
+        EXPECT_NE(shown.out.find(word), std::string::npos) << word << "\n" << shown.out;
+    EXPECT_EQ(shown.out.find("--texture"), std::string::npos) << shown.out;
+    EXPECT_EQ(shown.out.find("--print"), std::string::npos) << shown.out;
+
+    for (int k = 0; k < 2; ++k) {  // the second takes the place of the first
+        const Outcome written = debug(
+            {"--pixel", "12,8", "--texture", "paint", "--line", at_line("stripe *"), "--vscode"});
+        EXPECT_EQ(written.exit_code, 0) << written.text();
+    }
+    std::ifstream in(folder_ / ".vscode/launch.json");
+    const nlohmann::json launch = nlohmann::json::parse(in);
+    ASSERT_EQ(launch.at("configurations").size(), 1u);
+    const nlohmann::json& configuration = launch["configurations"][0];
+    EXPECT_EQ(configuration.at("type"), "cppdbg");
+    EXPECT_NE(configuration.at("setupCommands").dump().find("paint.c:" + at_line("stripe *")),
+              std::string::npos);
+    EXPECT_EQ(configuration.at("args").at(0), "render");
+}
+
+TEST_F(DebugTexture, SaysWhyItCannotStop)
+{
+    const auto expect_refusal = [&](const std::vector<std::string>& more,
+                                    const std::vector<std::string>& names) {
+        const Outcome outcome = debug(more);
+        EXPECT_EQ(outcome.exit_code, 2) << outcome.text();
+        EXPECT_EQ(outcome.err_lines().size(), 1u) << outcome.text();
+        for (const std::string& name : names)
+            EXPECT_NE(outcome.err.find(name), std::string::npos) << name << "\n" << outcome.err;
+    };
+    expect_refusal({"--texture", "paint"}, {"--pixel"});
+    expect_refusal({"--pixel", "12,8"}, {"paint", "left"});
+    expect_refusal({"--pixel", "12,8", "--texture", "varnish"}, {"varnish", "paint"});
+    expect_refusal({"--pixel", "30,8", "--texture", "paint"}, {"plain", "painted"});
+    expect_refusal({"--pixel", "0,0", "--texture", "paint"}, {"no surface", "painted"});
+    expect_refusal({"--pixel", "12,8", "--texture", "paint", "--line", "99"}, {"99", "paint.c"});
+    expect_refusal({"--pixel", "12,8", "--texture", "paint", "--debugger", "adb"}, {"adb", "gdb"});
+    expect_refusal({"--pixel", "12,8", "--texture", "paint", "--backend", "opencl"}, {"twin"});
+    expect_refusal({"--pixel", "40,8", "--texture", "paint"}, {"40,8"});
+}
+
+}  // namespace
