@@ -3,10 +3,13 @@
 #include "common/textures/procedural.h"
 #include "host/commands/trace_comparison.hpp"
 #include "host/render/render.hpp"
+#include "host/scene/texture_graph.hpp"
 #include "tests/laws/measure.hpp"
 #include "tests/textures/handwritten.hpp"
 
-#include <set>
+#include <chrono>
+#include <cmath>
+#include <numbers>
 
 namespace {
 
@@ -102,7 +105,146 @@ TEST_P(Textures, TX_7_NodesReadOtherNodes)
     EXPECT_TRUE(laws::obeys(measure(data), 0.25));
 }
 
+// The share of a cosine-distributed hemisphere that a wall of height 1 and width 2 takes, seen from
+// the floor before its middle (the form factor of a perpendicular rectangle, twice).
+double share_of_wall(double distance)
+{
+    const double r = std::sqrt(1 + distance * distance);
+    return (std::atan(1 / distance) - distance / r * std::atan(1 / r)) / std::numbers::pi;
+}
+
+// Rays of the lower hemisphere meet nothing, and none does within less than the way to the wall.
+TEST_P(Textures, TX_9_OcclusionIsTracedBeforeTheTextures)
+{
+    struct Case {
+        Hemisphere hemisphere;
+        double distance, open;
+    };
+    const double open = 1 - share_of_wall(0.2);
+    for (const Case& wanted :
+         {Case{Hemisphere::upper, 1e6, open}, Case{Hemisphere::lower, 1e6, 1},
+          Case{Hemisphere::both, 1e6, (1 + open) / 2}, Case{Hemisphere::upper, 0.1, 1}}) {
+        SceneBuilder scene;
+        TextureFunction function =
+            handwritten("t0", {{"reach", "float"}},
+                        "    const float open = tx_occlusion(tx, 1) + 0.0f * tx_occlusion(tx, 0);\n"
+                        "    return TX_NEW(float4, open, open, open, 1.0f);");
+        OcclusionRequest constant, argument;
+        constant.distance = 1;
+        argument.distance_argument = 0;
+        argument.hemisphere = wanted.hemisphere;
+        function.occlusion = {constant, argument};
+        const int n = scene.add_texture_node({"open",
+                                              scene.add_texture_function(function),
+                                              {{"reach", numbers({wanted.distance})}}});
+        scene.set_textures({.occlusion_rays = 16});
+        const int floor = scene.add_material({.base_color = {0, 0, 0, 1},
+                                              .specular = 0,
+                                              .emission = {1, 1, 1},
+                                              .emission_texture = node(n)});
+        const int wall = scene.add_material({.base_color = {0, 0, 0, 1}, .specular = 0});
+        scene.place(scene.add_mesh(quad_mesh({0, 0, -1}, {0, 0, 2}, {0.4, 0, 0}, floor)));
+        scene.place(scene.add_mesh(quad_mesh({0, 0, -1}, {0, 1, 0}, {0, 0, 2}, wall)));
+        scene.set_camera(
+            {.eye = {0.2, 1, 0}, .target = {0.2, 0, 0}, .up = {0, 0, 1}, .half_height = 0.01});
+        scene.set_picture_size(16, 16);
+        const SceneData data = laws::finish(scene, 0);
+        EXPECT_TRUE(data.effects & EFFECT_TEXTURE_OCCLUSION);
+        EXPECT_EQ(data.textures.occlusion_results, 2);
+        EXPECT_TRUE(laws::obeys(measure(data), wanted.open)) << wanted.distance;
+    }
+}
+
+// TX-4: ten thousand uses of one texture, each with its own values and an array of 4 KiB.
+TEST_P(Textures, TX_4_AttachmentsAndArraysHaveNoLimit)
+{
+    SceneBuilder scene;
+    TextureFunction function = handwritten("t0", {{"level", "float"}},
+                                           "    return TX_NEW(float4, level, level, level, 1.0f);");
+    function.arguments.push_back({"table", "float", true, 0});
+    const int id = scene.add_texture_function(function);
+    constexpr int count = 10000;
+    std::vector<MeshPart> parts;
+    std::vector<double> table(1024, 0.25);
+    for (int k = 0; k < count; ++k) {
+        const int n = scene.add_texture_node(
+            {"node " + std::to_string(k),
+             id,
+             {{"level", numbers({k % 2 ? 0.2 : 0.6})}, {"table", numbers(table)}}});
+        const int m = scene.add_material({.specular = 0, .base_texture = node(n)});
+        parts.push_back(quad_mesh({-1 + 0.02 * (k % 100), -1 + 0.02 * (k / 100), 0}, {0.02, 0, 0},
+                                  {0, 0.02, 0}, m));
+    }
+    scene.place(scene.add_mesh(std::move(parts)));
+    scene.set_environment(laws::environment_of([](const Vec3&) { return 1.0; }));
+    laws::look(scene, {0, 0, 3}, {0, 0, 0}, 1);
+    const auto start = std::chrono::steady_clock::now();
+    const SceneData data = laws::finish(scene);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    RecordProperty("load_milliseconds", int(seconds.count() * 1000));
+    EXPECT_EQ(data.textures.attachments.size(), size_t(count));
+    EXPECT_EQ(data.textures.functions.size(), 1u);
+    EXPECT_TRUE(laws::obeys(measure(data), 0.4, 0.005));
+}
+
 ON_EACH_BACKEND(Textures);
+
+// What finish() says of a graph, or nothing.
+std::string refusal(const std::vector<TextureNode>& nodes, const MaterialInput& material)
+{
+    SceneBuilder scene;
+    scene.add_texture_function(
+        handwritten("t0", {{"a", "float4"}}, "    return TX_NEW(float4, a.x, a.y, a.z, a.w);"));
+    for (const TextureNode& n : nodes) scene.add_texture_node(n);
+    const int m = scene.add_material(material);
+    scene.place(scene.add_mesh(quad_mesh({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, m)));
+    try {
+        scene.finish();
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(TextureGraph, TX_7_ACycleNamesItsNodes)
+{
+    const std::vector<TextureNode> nodes = {{"first", 0, {{"a", {.node = 1}}}},
+                                            {"second", 0, {{"a", {.node = 2}}}},
+                                            {"third", 0, {{"a", {.node = 1}}}}};
+    EXPECT_EQ(refusal(nodes, {.base_texture = node(0)}),
+              "texture nodes: second > third > second is a cycle; let one of them read something "
+              "else");
+}
+
+TEST(TextureGraph, TX_7_ASharedNodeIsOneStepAndSlotsAreFreed)
+{
+    // A chain of ten with the first node read by all: two values live at once.
+    std::vector<TextureNode> nodes = {{"start", 0, {{"a", {.numbers = {1, 1, 1, 1}}}}}};
+    for (int k = 1; k < 10; ++k)
+        nodes.push_back(
+            {"node " + std::to_string(k), 0, {{"a", {.node = k - 1}}, {"b", {.node = 0}}}});
+    const GraphProgram program = texture_order(nodes, {9});
+    ASSERT_EQ(program.steps.size(), 10u);
+    for (int k = 0; k < 10; ++k) EXPECT_EQ(program.steps[size_t(k)].node, k);
+    EXPECT_EQ(program.slots, 2);
+    EXPECT_EQ(program.steps[9].slot, -1) << "nobody reads the last";
+}
+
+TEST(TextureGraph, WrongArgumentsAreNamed)
+{
+    const MaterialInput material{.base_texture = node(0)};
+    EXPECT_EQ(refusal({{"n", 0, {}}}, material),
+              "texture node n: its argument float4 a is missing; give it a value");
+    EXPECT_EQ(refusal({{"n", 0, {{"a", {.numbers = {1, 2}}}}}}, material),
+              "texture node n: its argument a is of type float4, but has 2 numbers; give it 4");
+    EXPECT_EQ(refusal({{"n", 0, {{"b", {.numbers = {1}}}}}}, material),
+              "texture node n: userProc has no argument b; it takes: float4 a");
+    MaterialInput blended = material;
+    blended.name = "leaf";
+    blended.alpha_mode = ALPHA_BLEND;
+    EXPECT_TRUE(refusal({{"n", 0, {{"a", {.numbers = {1, 1, 1, 1}}}}}}, blended)
+                    .starts_with("material leaf: its alpha would come from texture node n"));
+}
 
 // Something of everything that the stage can be asked for.
 SceneData busy_textures()
