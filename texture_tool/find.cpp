@@ -64,10 +64,25 @@ public:
             for (size_t at = 0; (at = text.find("'" + other + "'", at)) != std::string::npos; ++at)
                 text.replace(at + 1, other.size(), name);
         has_errors = true;
-        problem.text = with_remedy(text);
+        problem.text = with_remedy(
+            is_call(info) ? "call to undeclared function" + text.substr(text.find(" '")) : text);
         const auto same = [&](const Problem& p) { return p.is_error && p.line == problem.line; };
         if (std::none_of(description_.problems.begin(), description_.problems.end(), same))
             description_.problems.push_back(problem);
+    }
+
+    // LLVM 19 calls unknown functions undeclared identifiers.
+    static bool is_call(const clang::Diagnostic& info)
+    {
+        llvm::SmallString<64> text;
+        info.FormatDiagnostic(text);
+        if (text.str().find("use of undeclared identifier") != 0 || !info.hasSourceManager())
+            return false;
+        const char* at = info.getSourceManager().getCharacterData(
+            info.getSourceManager().getExpansionLoc(info.getLocation()));
+        while (isalnum(static_cast<unsigned char>(*at)) || *at == '_') ++at;
+        while (*at == ' ') ++at;
+        return *at == '(';
     }
 
     std::set<std::pair<int, int>> falls_off;  // closing braces of functions that may return nothing
@@ -185,6 +200,22 @@ void note_missing_returns(const Diagnostics& diagnostics, Description& descripti
     }
 }
 
+// Macros can put together what the file's own words do not show.
+void check_expansions(Description& description)
+{
+    std::vector<Word> words;
+    for (const Token& token : description.tokens)
+        if (!description.is_library(token.line))
+            words.push_back({token.offset, token.line, token.column, false, false, token.text});
+    std::vector<Problem> found;
+    check_words(words, found);
+    for (const Problem& problem : found) {
+        const auto same = [&](const Problem& p) { return p.line == problem.line && p.is_error; };
+        if (std::none_of(description.problems.begin(), description.problems.end(), same))
+            description.problems.push_back(problem);
+    }
+}
+
 }  // namespace
 
 std::string parser_version() { return LLVM_VERSION_STRING; }
@@ -260,6 +291,7 @@ Description find(const std::string& name, const std::string& source)
     invocation.setDiagnosticConsumer(&diagnostics);
     invocation.run();
     note_missing_returns(diagnostics, description);
+    check_expansions(description);
     return description;
 }
 

@@ -183,6 +183,12 @@ void check_words(const std::vector<Word>& words, std::vector<Problem>& problems)
 {
     for (size_t i = 0; i < words.size(); ++i) {
         const Word& word = words[i];
+        const std::string next = i + 1 < words.size() ? words[i + 1].text : "";
+        if ((word.text == "[" && next == "[") || word.text == "<:" ||
+            (word.text == "<" && next == ":"))
+            complain(problems, word,
+                     "attributes and digraphs are not part of the language: " + word.text + next +
+                         " could change what the compiler does; remove it");
         if (word.starts_line && word.text == "#" && i + 1 < words.size() &&
             words[i + 1].is_in_directive && is_name(words[i + 1].text))
             check_directive(word, words[i + 1], problems);
