@@ -20,9 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int side = 256;          // of the picture whose camera rays are timed
-constexpr int compared_side = 64;  // of the picture whose values are compared
-constexpr int repetitions = 3;
+constexpr int side = 64;  // of the picture whose camera rays are timed and compared
+constexpr int repetitions = 5;
 constexpr const char* reference = "twin";
 
 // A texture that is constant: what remains is the stage around it.
@@ -50,18 +49,18 @@ private:
     fs::path path_;
 };
 
-SceneData scene_of(const TextureFile& file, const std::vector<std::string>& values, int width)
+SceneData scene_of(const TextureFile& file, const std::vector<std::string>& values)
 {
-    SceneData scene = square_scene(file, {values, "baseColor", width, width});
+    SceneData scene = square_scene(file, {values, "baseColor", side, side});
     scene.settings.at(0).max_bounces = 0;
     scene.settings.at(0).filter = FILTER_BOX;
     return scene;
 }
 
-std::vector<WorkItem> items_of(int width)
+std::vector<WorkItem> items_of_picture()
 {
     std::vector<WorkItem> items;
-    for (const Pixel& block : blocks_of(width, width)) items.push_back({block.x, block.y, 0, 0});
+    for (const Pixel& block : blocks_of(side, side)) items.push_back({block.x, block.y, 0, 0});
     return items;
 }
 
@@ -73,7 +72,7 @@ struct StageTimes {
 // Nanoseconds a path, the least of some repetitions. The scene is uploaded.
 StageTimes stage_times(Backend& backend, const SceneData& scene)
 {
-    std::vector<WorkItem> items = items_of(side);
+    std::vector<WorkItem> items = items_of_picture();
     items.resize(std::min(items.size(), size_t(std::max(1, backend.plan(scene).items))));
     const Dispatch dispatch{items};
     Results results;
@@ -100,7 +99,7 @@ StageTimes stage_times(Backend& backend, const SceneData& scene)
 // an evaluation. As many at once as the backend takes.
 std::vector<float> values_of(Backend& backend, const SceneData& scene)
 {
-    const std::vector<WorkItem> items = items_of(compared_side);
+    const std::vector<WorkItem> items = items_of_picture();
     const size_t at_once = size_t(std::max(1, backend.plan(scene).items));
     std::vector<float> values;
     for (size_t first = 0; first < items.size(); first += at_once) {
@@ -141,9 +140,8 @@ TextureTiming time_on(const std::string& name, const TextureFile& file,
     timing.backend = name;
     BackendOptions alone = options;
     if (name != "opencl" && alone.threads == 0) alone.threads = 1;
-    SceneData scene = scene_of(file, values, side);
-    SceneData empty = scene_of(constant, {}, side);
-    SceneData small = scene_of(file, values, compared_side);
+    SceneData scene = scene_of(file, values);
+    SceneData empty = scene_of(constant, {});
     try {
         const std::unique_ptr<Backend> backend = make_backend(name, alone);
         timing.device = backend->description();
@@ -151,10 +149,9 @@ TextureTiming time_on(const std::string& name, const TextureFile& file,
         const StageTimes times = stage_times(*backend, scene);
         timing.nanoseconds = times.evaluation;
         timing.ray_nanoseconds = times.rays;
+        compare_values(timing, values_of(*backend, scene), wanted);
         backend->upload(empty);
         timing.stage_nanoseconds = stage_times(*backend, empty).evaluation;
-        backend->upload(small);
-        compare_values(timing, values_of(*backend, small), wanted);
     } catch (const std::runtime_error& error) {
         const std::string text = error.what();
         timing.failure = text.substr(0, text.find('\n'));
@@ -194,10 +191,10 @@ std::vector<TextureTiming> time_texture(const TextureFile& file,
                                         const BackendOptions& options)
 {
     const ConstantTexture constant;
-    SceneData small = scene_of(file, values, compared_side);
+    SceneData scene = scene_of(file, values);
     const std::unique_ptr<Backend> twin = make_backend(reference, options);
-    twin->upload(small);
-    const std::vector<float> wanted = values_of(*twin, small);
+    twin->upload(scene);
+    const std::vector<float> wanted = values_of(*twin, scene);
     std::vector<TextureTiming> timings;
     for (const std::string& name : backends)
         timings.push_back(time_on(name, file, values, constant.file(), options, wanted));
@@ -225,7 +222,7 @@ std::string cost_card(const TextureFile& file, const std::vector<std::string>& v
     text += fmt::format("\nthe texture stage as compilers for GPUs see it\n{:<8} {:>12} {:>16} "
                         "{:>16} {:>12}\n",
                         "target", "registers", "stack bytes", "spilled bytes", "code bytes");
-    SceneData scene = scene_of(file, values, compared_side);
+    SceneData scene = scene_of(file, values);
     for (const DeviceCost& cost : device_costs(scene)) {
         if (!cost.missing.empty())
             text += fmt::format("{:<8} not measured: {}\n", cost.target, cost.missing);

@@ -60,13 +60,15 @@ protected:
         return value;
     }
 
-    static std::array<float, 3> vector_after(const std::string& text, const std::string& words)
+    static std::array<float, 3> vector_after(const std::string& text, const std::string& words,
+                                             char bracket = '{')
     {
         std::array<float, 3> value{};
         const size_t at = text.find(words);
+        const std::string pattern = std::string(1, bracket) + "x = %f, y = %f, z = %f";
         EXPECT_TRUE(at != std::string::npos &&
-                    std::sscanf(text.c_str() + at + words.size(), "{x = %f, y = %f, z = %f",
-                                &value[0], &value[1], &value[2]) == 3)
+                    std::sscanf(text.c_str() + at + words.size(), pattern.c_str(), &value[0],
+                                &value[1], &value[2]) == 3)
             << words << " in\n"
             << text;
         return value;
@@ -149,7 +151,11 @@ TEST_F(DebugTexture, LldbStopsThereToo)
                                   {"frame variable scale tint stripe", "finish"});
     EXPECT_NE(outcome.out.find("paint.c:" + at_line("stripe * tint")), std::string::npos)
         << outcome.text();
-    EXPECT_NE(outcome.out.find("scale = 7"), std::string::npos) << outcome.text();
+    EXPECT_NE(outcome.out.find("(float) scale = 7"), std::string::npos) << outcome.text();
+    EXPECT_EQ(vector_after(outcome.out, "float3) tint = ", '('),
+              (std::array<float, 3>{0.5f, 0.75f, 1.0f}));
+    EXPECT_EQ(vector_after(outcome.out, "Return value: (user_language::float4) $0 = ", '('),
+              solo("paint", "12,8", "twin"));
 }
 
 TEST_F(DebugTexture, PrintsTheCommandAndWritesALaunchFile)

@@ -45,6 +45,19 @@ protected:
     TestFolder folder_;
 };
 
+TEST_F(TextureCommandLine, HelpNamesOptionsAndExitCodes)
+{
+    EXPECT_NE(texture({"--help"}).out.find("Exit codes"), std::string::npos);
+    EXPECT_NE(texture({"preview", "--help"}).out.find("--set"), std::string::npos);
+    EXPECT_NE(texture({"cost", "--help"}).out.find("--backends"), std::string::npos);
+    EXPECT_NE(run_diptych({"debug", "--help"}).out.find("Exit codes"), std::string::npos);
+    for (const char* command : {"check", "show", "preview", "cost"}) {
+        const Outcome refused = texture({command, "shaded.c", "--nonsense"});
+        EXPECT_EQ(refused.exit_code, 2) << refused.text();
+        EXPECT_NE(refused.err.find("--nonsense"), std::string::npos) << refused.err;
+    }
+}
+
 TEST_F(TextureCommandLine, CheckSaysGoodOrWhatIsWrongAndWhere)
 {
     const Outcome good = texture({"check", "shaded.c"});
