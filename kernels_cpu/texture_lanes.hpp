@@ -56,14 +56,19 @@ struct Lanes {
     scene.settings = &settings;               \
     const Paths paths = paths_in;
 
+// Bodies of loops are functions: a local variable of the loop itself would become an array of as
+// many as there are lanes, and stay in memory.
+SHARED void fill_lane(const Scene* scene, const Paths* paths, Lanes& lanes, int k)
+{
+    const TextureContext tx = texture_context(scene, paths, lanes.path[k], TEXTURE_ASKED);
+    TEXTURE_ATTRIBUTES(STORE_FIELD)
+}
+
 [[gnu::noinline]] void fill(const Scene& scene_in, const Paths& paths_in, Lanes& lanes, int count)
 {
     LOCAL_SCENE
 #pragma omp simd
-    for (int k = 0; k < count; ++k) {
-        const TextureContext tx = texture_context(&scene, &paths, lanes.path[k], TEXTURE_ASKED);
-        TEXTURE_ATTRIBUTES(STORE_FIELD)
-    }
+    for (int k = 0; k < count; ++k) fill_lane(&scene, &paths, lanes, k);
 }
 
 SHARED TextureContext context_of(const Scene* scene, const Paths* paths, const Lanes& lanes, int k)
@@ -82,24 +87,28 @@ SHARED TextureContext context_of(const Scene* scene, const Paths* paths, const L
 }
 
 // One step of all lanes; is_uniform: they have the same region.
-#define FUNCTION_LOOP(number, id)                                                                  \
-    template<bool is_uniform>                                                                      \
-    [[gnu::noinline]] void id##_loop(const Scene& scene_in, const Paths& paths_in, Lanes& lanes,   \
-                                     int count, TextureStep step, int step_number)                 \
-    {                                                                                              \
-        LOCAL_SCENE                                                                                \
-        const int offset = step_number * TEXTURE_STEP_WORDS + 1;                                   \
-        _Pragma("omp simd") for (int k = 0; k < count; ++k)                                        \
-        {                                                                                          \
-            TextureContext tx = context_of(&scene, &paths, lanes, k);                              \
-            texture_begin(&tx, step);                                                              \
-            const int own = int(material_word(&scene, lanes.first_step[k] + offset));              \
-            const auto value = user_language::id::id##_entry(&tx, is_uniform ? step.region : own); \
-            lanes.value[0][k] = value.x;                                                           \
-            lanes.value[1][k] = value.y;                                                           \
-            lanes.value[2][k] = value.z;                                                           \
-            lanes.value[3][k] = value.w;                                                           \
-        }                                                                                          \
+#define FUNCTION_LOOP(number, id)                                                                \
+    template<bool is_uniform>                                                                    \
+    SHARED void id##_lane(const Scene* scene, const Paths* paths, Lanes& lanes, int k,           \
+                          TextureStep step, int offset)                                          \
+    {                                                                                            \
+        TextureContext tx = context_of(scene, paths, lanes, k);                                  \
+        texture_begin(&tx, step);                                                                \
+        const int own = int(material_word(scene, lanes.first_step[k] + offset));                 \
+        const auto value = user_language::id::id##_entry(&tx, is_uniform ? step.region : own);   \
+        lanes.value[0][k] = value.x;                                                             \
+        lanes.value[1][k] = value.y;                                                             \
+        lanes.value[2][k] = value.z;                                                             \
+        lanes.value[3][k] = value.w;                                                             \
+    }                                                                                            \
+    template<bool is_uniform>                                                                    \
+    [[gnu::noinline]] void id##_loop(const Scene& scene_in, const Paths& paths_in, Lanes& lanes, \
+                                     int count, TextureStep step, int step_number)               \
+    {                                                                                            \
+        LOCAL_SCENE                                                                              \
+        const int offset = step_number * TEXTURE_STEP_WORDS + 1;                                 \
+        _Pragma("omp simd") for (int k = 0; k < count; ++k)                                      \
+            id##_lane<is_uniform>(&scene, &paths, lanes, k, step, offset);                       \
     }
 TEXTURE_FUNCTIONS(FUNCTION_LOOP)
 
