@@ -115,7 +115,7 @@ SHARED TextureContext texture_context(const Scene* scene, const Paths* paths, in
     tx.normal = place.normal * sign;
     tx.view_direction = -get_ray_direction(paths, i);
     tx.local_position = place.position;
-    if ((asked & ATTRIBUTE_LocalPos) != 0u && uses(scene, EFFECT_INSTANCES))
+    if (uses(scene, EFFECT_INSTANCES) && (asked & ATTRIBUTE_LocalPos) != 0u)
         tx.local_position = point_to_object(scene, place.instance, place.position);
     tx.tangent = zero;
     tx.bitangent = zero;
@@ -136,7 +136,7 @@ SHARED TextureContext texture_context(const Scene* scene, const Paths* paths, in
     tx.uv0_dx = none;
     tx.uv0_dy = none;
     tx.vertex_color = make_float4(1.0f, 1.0f, 1.0f, 1.0f);
-    if ((asked & ATTRIBUTE_VertexColor) != 0u && uses(scene, EFFECT_VERTEX_COLOR))
+    if (uses(scene, EFFECT_VERTEX_COLOR) && (asked & ATTRIBUTE_VertexColor) != 0u)
         tx.vertex_color = surface_vertex_color(scene, place.triangle, place.weights);
     tx.object = 0;
     if ((asked & ATTRIBUTE_ObjectId) != 0u)

@@ -116,6 +116,8 @@ SelftestResult run_selftest(Backend& device, Backend& twin, const Allowance& all
     }
     for (int s = 0; s < STAGE_COUNT; ++s) {
         if (s == STAGE_compact) continue;  // seen in what accumulate makes of the paths
+        // They run for users' textures alone, which `diptych texture cost` compares.
+        if (s == STAGE_trace_texture_rays || s == STAGE_evaluate_textures) continue;
         const StageTally& tally = tallies[size_t(s)];
         const bool is_ok = tally.paths > 0 && tally.values > 0 &&
                            double(tally.parted) <= allowance.parted_share * double(tally.paths);

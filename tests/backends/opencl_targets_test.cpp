@@ -3,6 +3,7 @@
 #include "backends/kernel_sources.hpp"
 
 #include "backends/backend.hpp"
+#include "backends/textures/texture_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,6 +29,23 @@ const Target targets[] = {
     {"amdgcn", "-target amdgcn--amdhsa -nogpulib -mcpu=gfx900 -S", "amdgcn--amdhsa.bc"},
     {"spir64", "-target spir64 -S -emit-llvm", ""},
 };
+
+// The program of a stage; the one that holds users' textures with one that adds 1 to an argument.
+std::string program_of(Stage stage)
+{
+    if (stage != STAGE_evaluate_textures) return kernel_source(stage);
+    TextureFunction function;
+    function.id = "t0";
+    function.opencl = "static float4 t0_entry(TextureContext* tx, int region)\n"
+                      "{\n"
+                      "    return (float4)(tx_argument_float(tx, region, 0) + 1.0f, tx->uv0.x, "
+                      "tx->uv0.y, 1.0f);\n"
+                      "}\n";
+    SceneData scene;
+    scene.textures.functions.push_back(function);
+    scene.textures.attributes = ~0u;
+    return opencl_texture_program(scene, kernel_source(stage));
+}
 
 int run(const std::string& command) { return std::system(command.c_str()); }
 
@@ -69,7 +87,7 @@ protected:
     void compile(Stage stage, unsigned effects)
     {
         const fs::path source = folder_ / (std::string(stage_names[stage]) + ".cl");
-        std::ofstream(source) << kernel_source(stage);
+        std::ofstream(source) << program_of(stage);
         const std::string library = find_library(GetParam().library);
         const bool links = *GetParam().library && !library.empty();
         const std::string command =
