@@ -21,6 +21,8 @@
 namespace diptych {
 namespace {
 
+#include "kernels_cpu/typed_views.hpp"
+
 #if defined(__AVX512F__)
 constexpr int width = 16;
 using RayHits = RTCRayHit16;
@@ -46,20 +48,9 @@ struct Views {
     Paths paths;
 };
 
-Views typed(const SceneView& scene_view, const PathView& path_view)
+Views typed(const SceneView& scene, const PathView& paths)
 {
-    Views views{};
-    views.scene.effects = scene_view.effects;
-    int row = 0;
-#define BIND_SCENE(type, name) \
-    views.scene.name = static_cast<const type*>(scene_view.buffers[row++]);
-    SCENE_BUFFERS(BIND_SCENE)
-    row = 0;
-    views.paths.capacity = path_view.capacity;
-#define BIND_PATH(type, name, life) \
-    views.paths.name = static_cast<decltype(views.paths.name)>(path_view.planes[row++]);
-    PATH_BUFFERS(BIND_PATH)
-    return views;
+    return {scene_from(scene), paths_from(paths)};
 }
 
 // What filters need of the rays of a packet.

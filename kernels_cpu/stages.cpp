@@ -22,39 +22,7 @@ namespace diptych::KERNEL_SET {
 
 namespace {
 
-Scene scene_from(const SceneView& view)
-{
-    Scene scene;
-    int row = 0;
-    scene.effects = view.effects;
-#define BIND_SCENE(type, name) scene.name = static_cast<decltype(scene.name)>(view.buffers[row++]);
-    SCENE_BUFFERS(BIND_SCENE)
-    return scene;
-}
-
-Paths paths_from(const PathView& view)
-{
-    Paths paths;
-    paths.capacity = view.capacity;
-    paths.results = view.results;
-    paths.samples = view.samples;
-    paths.pixel_shift = view.pixel_shift;
-    paths.turn = view.turn;
-    paths.items = static_cast<decltype(paths.items)>(view.items);
-    int row = 0;
-#define BIND_PATH(type, name, life) \
-    paths.name = static_cast<decltype(paths.name)>(view.planes[row++]);
-    PATH_BUFFERS(BIND_PATH)
-    row = 0;
-#define BIND_RESULT(type, name) \
-    paths.name = static_cast<decltype(paths.name)>(view.result_planes[row++]);
-    RESULT_BUFFERS(BIND_RESULT)
-    row = 0;
-#define BIND_TEXTURE(type, name) \
-    paths.name = static_cast<decltype(paths.name)>(view.texture_planes[row++]);
-    TEXTURE_BUFFERS(BIND_TEXTURE)
-    return paths;
-}
+#include "kernels_cpu/typed_views.hpp"
 
 // Effects that vectorised loops are compiled for, from few to many; the first that covers a scene
 // serves it. A condition that is the same for all paths would keep a loop from being vectorised, so

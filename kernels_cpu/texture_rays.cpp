@@ -11,6 +11,8 @@
 namespace diptych {
 namespace {
 
+#include "kernels_cpu/typed_views.hpp"
+
 constexpr int lane_count = 64;  // paths whose rays are traced together
 constexpr int most_rays = 256;  // of a request
 constexpr int passes = 8;       // surfaces that a ray to its own object passes, as in the walk
@@ -62,24 +64,9 @@ struct Views {
     Paths paths;
 };
 
-Views typed(const SceneView& scene_view, const PathView& path_view)
+Views typed(const SceneView& scene, const PathView& paths)
 {
-    Views views{};
-    views.scene.effects = scene_view.effects;
-    int row = 0;
-#define BIND_SCENE(type, name) \
-    views.scene.name = static_cast<const type*>(scene_view.buffers[row++]);
-    SCENE_BUFFERS(BIND_SCENE)
-    row = 0;
-    views.paths.capacity = path_view.capacity;
-#define BIND_PATH(type, name, life) \
-    views.paths.name = static_cast<decltype(views.paths.name)>(path_view.planes[row++]);
-    PATH_BUFFERS(BIND_PATH)
-    row = 0;
-#define BIND_TEXTURE(type, name) \
-    views.paths.name = static_cast<decltype(views.paths.name)>(path_view.texture_planes[row++]);
-    TEXTURE_BUFFERS(BIND_TEXTURE)
-    return views;
+    return {scene_from(scene), paths_from(paths)};
 }
 
 // The paths whose rays are traced together, each with its place.

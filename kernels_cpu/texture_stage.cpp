@@ -32,30 +32,7 @@ namespace {
 using diptych::PathView;
 using diptych::SceneView;
 
-Scene scene_from(const SceneView& view)
-{
-    Scene scene;
-    int row = 0;
-    scene.effects = view.effects;
-#define BIND_SCENE(type, name) scene.name = static_cast<decltype(scene.name)>(view.buffers[row++]);
-    SCENE_BUFFERS(BIND_SCENE)
-    return scene;
-}
-
-Paths paths_from(const PathView& view)
-{
-    Paths paths{};
-    paths.capacity = view.capacity;
-    int row = 0;
-#define BIND_PATH(type, name, life) \
-    paths.name = static_cast<decltype(paths.name)>(view.planes[row++]);
-    PATH_BUFFERS(BIND_PATH)
-    row = 0;
-#define BIND_TEXTURE(type, name) \
-    paths.name = static_cast<decltype(paths.name)>(view.texture_planes[row++]);
-    TEXTURE_BUFFERS(BIND_TEXTURE)
-    return paths;
-}
+#include "kernels_cpu/typed_views.hpp"
 
 // Where the material of what path i has hit keeps its program; 0: nothing to run.
 SHARED int program_of(const Scene* scene, const Paths* paths, int i)
