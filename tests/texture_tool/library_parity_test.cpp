@@ -1,8 +1,5 @@
 // The library's textures as the texture tool writes them: the same bits as scalar C++, as
 // vectorised C++ and on every OpenCL device, with the arguments that their headers name.
-#define CL_TARGET_OPENCL_VERSION 120
-
-#include <CL/cl.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -17,6 +14,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/common/opencl_handles.hpp"
 #include "tests/texture_tool/library_loops.hpp"
 
 namespace {
@@ -230,46 +228,6 @@ INSTANTIATE_TEST_SUITE_P(All, LibraryTexture, testing::ValuesIn([] {
                              return names;
                          }()),
                          [](const auto& info) { return info.param; });
-
-std::vector<cl_device_id> all_devices()
-{
-    cl_uint platform_count = 0;
-    clGetPlatformIDs(0, nullptr, &platform_count);
-    std::vector<cl_platform_id> platforms(platform_count);
-    clGetPlatformIDs(platform_count, platforms.data(), nullptr);
-    std::vector<cl_device_id> devices;
-    for (cl_platform_id platform : platforms) {
-        cl_uint count = 0;
-        clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
-        std::vector<cl_device_id> found(count);
-        clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, found.data(), nullptr);
-        devices.insert(devices.end(), found.begin(), found.end());
-    }
-    return devices;
-}
-
-// The sources promise equal bits where arithmetic is IEEE's throughout.
-bool has_exact_arithmetic(cl_device_id device)
-{
-    cl_device_fp_config config = 0;
-    clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof(config), &config, nullptr);
-    const cl_device_fp_config needed = CL_FP_DENORM | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
-    return (config & needed) == needed;
-}
-
-template<auto release>
-struct Release {
-    template<class Handle>
-    void operator()(Handle* handle) const
-    {
-        release(handle);
-    }
-};
-using Context = std::unique_ptr<_cl_context, Release<clReleaseContext>>;
-using Queue = std::unique_ptr<_cl_command_queue, Release<clReleaseCommandQueue>>;
-using Program = std::unique_ptr<_cl_program, Release<clReleaseProgram>>;
-using Kernel = std::unique_ptr<_cl_kernel, Release<clReleaseKernel>>;
-using Buffer = std::unique_ptr<_cl_mem, Release<clReleaseMemObject>>;
 
 class Device {
 public:
