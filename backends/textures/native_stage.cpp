@@ -2,6 +2,7 @@
 
 #include "backends/program_cache.hpp"
 #include "backends/sha256.hpp"
+#include "backends/textures/scratch_folder.hpp"
 #include "backends/textures/stage_headers.hpp"
 #include "backends/textures/subprocess.hpp"
 #include "backends/textures/texture_source.hpp"
@@ -22,12 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* entry_name = "diptych_evaluate_textures";
 std::atomic<unsigned long> compilations{0};
-
-std::string text_of(const fs::path& file)
-{
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 void write_text(const fs::path& file, const std::string& text)
 {

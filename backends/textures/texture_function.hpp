@@ -13,7 +13,22 @@ struct TextureArgument {
     bool is_array = false;
     int length = 0;               // of an array, as declared; 0: as long as the scene makes it
     std::string default_value{};  // JSON, as the file's comment says; empty: none
+    std::string about{};          // what the comment says of it
 };
+
+// Numbers in an element: 3 of float3.
+inline int width_of(const TextureArgument& argument)
+{
+    const char last = argument.type.back();
+    return argument.type != "sam2D" && last >= '0' && last <= '9' ? last - '0' : 1;
+}
+
+// "float3[4]"
+inline std::string type_of(const TextureArgument& argument)
+{
+    if (!argument.is_array) return argument.type;
+    return argument.type + "[" + (argument.length > 0 ? std::to_string(argument.length) : "") + "]";
+}
 
 enum class Hemisphere { upper, lower, both };
 

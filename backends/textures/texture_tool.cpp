@@ -2,6 +2,7 @@
 
 #include "backends/program_cache.hpp"
 #include "backends/sha256.hpp"
+#include "backends/textures/scratch_folder.hpp"
 #include "backends/textures/subprocess.hpp"
 
 #include "platform.h"
@@ -10,10 +11,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <unistd.h>
@@ -23,12 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-std::string text_of(const fs::path& file)
-{
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 fs::path program_folder()
 {
@@ -53,29 +48,6 @@ std::string tool()
                              "beside the program nor on the PATH; install it, or set "
                              "DIPTYCH_TEXTURE_TOOL");
 }
-
-// A folder of its own, gone at the end.
-class ScratchFolder {
-public:
-    ScratchFolder()
-    {
-        std::string pattern = (fs::temp_directory_path() / "diptych-texture-XXXXXX").string();
-        if (!mkdtemp(pattern.data()))
-            throw std::runtime_error(pattern + ": cannot be made; free the disk or set TMPDIR");
-        path_ = pattern;
-    }
-    ~ScratchFolder()
-    {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    std::string operator/(const char* name) const { return (path_ / name).string(); }
-
-private:
-    fs::path path_;
-};
 
 // What the tool writes, as one text.
 std::string translated(const std::string& program, const TextureSource& source)
@@ -123,18 +95,31 @@ unsigned attribute_bit(const std::string& name)
     return 0;
 }
 
-// What a comment line says of an argument, "// NAME (TYPE, ...; default JSON): ...", by name.
-std::map<std::string, std::string> documented_defaults(const std::string& source)
+std::string trimmed(const std::string& text)
 {
-    std::map<std::string, std::string> defaults;
+    const size_t first = text.find_first_not_of(" \t\r");
+    return first == std::string::npos
+               ? ""
+               : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+// Comment lines "// NAME (TYPE, ...; default JSON): what it is" tell of arguments.
+void read_comments(const std::string& source, std::vector<TextureArgument>& arguments)
+{
     std::istringstream lines(source);
     for (std::string line; std::getline(lines, line);) {
-        const size_t open = line.find(" ("), at = line.find("; default "), end = line.find("):");
-        if (!line.starts_with("// ") || open >= at || at >= end || end == std::string::npos)
+        const size_t open = line.find(" ("), close = line.find("):");
+        if (!line.starts_with("// ") || open == std::string::npos || close == std::string::npos ||
+            open > close)
             continue;
-        defaults[line.substr(3, open - 3)] = line.substr(at + 10, end - at - 10);
+        const auto argument =
+            std::ranges::find(arguments, line.substr(3, open - 3), &TextureArgument::name);
+        if (argument == arguments.end() || !argument->about.empty()) continue;
+        argument->about = trimmed(line.substr(close + 2));
+        const std::string inside = line.substr(open + 2, close - open - 2);
+        const size_t at = inside.rfind("; default ");
+        if (at != std::string::npos) argument->default_value = trimmed(inside.substr(at + 10));
     }
-    return defaults;
 }
 
 OcclusionRequest occlusion_request(const json& from)
@@ -163,15 +148,13 @@ TextureFunction function_of(const json& all, const TextureSource& source)
     function.description = from.dump();
     function.cpp = all.at("cpp").get<std::string>();
     function.opencl = all.at("opencl").get<std::string>();
-    const std::map<std::string, std::string> defaults = documented_defaults(text_of(source.file));
     for (const json& argument : from.at("arguments")) {
         const json& length = argument.at("length");
         function.arguments.push_back(
             {argument.at("name").get<std::string>(), argument.at("type").get<std::string>(),
-             argument.at("is_array").get<bool>(), length.is_number() ? length.get<int>() : 0, ""});
-        const auto known = defaults.find(function.arguments.back().name);
-        if (known != defaults.end()) function.arguments.back().default_value = known->second;
+             argument.at("is_array").get<bool>(), length.is_number() ? length.get<int>() : 0});
     }
+    read_comments(text_of(source.file), function.arguments);
     for (const json& request : from.at("occlusion"))
         function.occlusion.push_back(occlusion_request(request));
     for (const json& name : from.at("attributes"))

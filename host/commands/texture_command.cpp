@@ -85,20 +85,16 @@ void show_occlusion(const TextureFunction& function)
                    request.is_same_object ? ", by the same object alone" : "");
 }
 
-void show_arguments(const TextureFunction& function, const TextureFile& file)
+void show_arguments(const TextureFunction& function)
 {
-    const auto documented = documented_arguments(file.path);
     if (function.arguments.empty()) fmt::print("arguments   none\n");
     for (size_t k = 0; k < function.arguments.size(); ++k) {
         const TextureArgument& argument = function.arguments[k];
-        const auto known = documented.find(argument.name);
         std::string text = fmt::format("{:<12}{:<9} {:<12}", k == 0 ? "arguments" : "",
                                        type_of(argument), argument.name);
-        if (known != documented.end()) {
-            if (!known->second.default_value.empty())
-                text += fmt::format(" default {};", known->second.default_value);
-            text += " " + known->second.about;
-        }
+        if (!argument.default_value.empty())
+            text += fmt::format(" default {};", argument.default_value);
+        text += " " + argument.about;
         text.erase(text.find_last_not_of(' ') + 1);
         fmt::print("{}\n", text);
     }
@@ -117,7 +113,7 @@ int show(const TextureCommand& command)
         throw std::runtime_error("--code " + command.code + ": no such variant; opencl or c++");
     const json about = json::parse(function.description);
     fmt::print("{}:{}: {}\n", file.name, about.value("line", 1), signature(function));
-    show_arguments(function, file);
+    show_arguments(function);
     fmt::print("attributes  {}\n", listed(about.at("attributes")));
     fmt::print("settings    {}\n", listed(about.at("settings")));
     show_occlusion(function);

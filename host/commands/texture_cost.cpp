@@ -1,5 +1,6 @@
 #include "host/commands/texture_cost.hpp"
 
+#include "backends/textures/scratch_folder.hpp"
 #include "common/as_cpp/path_rows.hpp"
 #include "host/commands/texture_preview.hpp"
 #include "host/render/render.hpp"
@@ -25,29 +26,12 @@ constexpr int repetitions = 5;
 constexpr const char* reference = "twin";
 
 // A texture that is constant: what remains is the stage around it.
-class ConstantTexture {
-public:
-    ConstantTexture()
-    {
-        std::string name = (fs::temp_directory_path() / "diptych-constant-XXXXXX.c").string();
-        const int file = mkstemps(name.data(), 2);
-        if (file < 0) throw std::runtime_error(name + ": cannot be made; free the disk");
-        close(file);
-        path_ = name;
-        std::ofstream(path_) << "float constant_texture() { return 0.5f; }\n";
-    }
-    ~ConstantTexture()
-    {
-        std::error_code ignored;
-        fs::remove(path_, ignored);
-    }
-    ConstantTexture(const ConstantTexture&) = delete;
-    ConstantTexture& operator=(const ConstantTexture&) = delete;
-    TextureFile file() const { return {path_, "constant.c", ""}; }
-
-private:
-    fs::path path_;
-};
+TextureFile constant_texture(const ScratchFolder& folder)
+{
+    const std::string path = folder / "constant.c";
+    std::ofstream(path) << "float constant_texture() { return 0.5f; }\n";
+    return {path, "constant.c", ""};
+}
 
 SceneData scene_of(const TextureFile& file, const std::vector<std::string>& values)
 {
@@ -190,14 +174,15 @@ std::vector<TextureTiming> time_texture(const TextureFile& file,
                                         const std::vector<std::string>& backends,
                                         const BackendOptions& options)
 {
-    const ConstantTexture constant;
+    const ScratchFolder folder;
+    const TextureFile constant = constant_texture(folder);
     SceneData scene = scene_of(file, values);
     const std::unique_ptr<Backend> twin = make_backend(reference, options);
     twin->upload(scene);
     const std::vector<float> wanted = values_of(*twin, scene);
     std::vector<TextureTiming> timings;
     for (const std::string& name : backends)
-        timings.push_back(time_on(name, file, values, constant.file(), options, wanted));
+        timings.push_back(time_on(name, file, values, constant, options, wanted));
     return timings;
 }
 

@@ -6,6 +6,7 @@
 #ifdef DIPTYCH_WITH_OPENCL
 
 #include "backends/kernel_sources.hpp"
+#include "backends/textures/scratch_folder.hpp"
 #include "backends/textures/subprocess.hpp"
 #include "backends/textures/texture_source.hpp"
 
@@ -23,28 +24,6 @@ namespace diptych {
 namespace {
 
 namespace fs = std::filesystem;
-
-class ScratchFolder {
-public:
-    ScratchFolder()
-    {
-        std::string pattern = (fs::temp_directory_path() / "diptych-cost-XXXXXX").string();
-        if (!mkdtemp(pattern.data()))
-            throw std::runtime_error(pattern + ": cannot be made; free the disk");
-        path_ = pattern;
-    }
-    ~ScratchFolder()
-    {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    std::string operator/(const char* name) const { return (path_ / name).string(); }
-
-private:
-    fs::path path_;
-};
 
 std::string first_program(const std::vector<std::string>& names)
 {
@@ -70,12 +49,6 @@ std::string library(const std::string& name)
     for (const std::string& folder : folders)
         if (fs::exists(folder + "/" + name)) return folder + "/" + name;
     return "";
-}
-
-std::string text_of(const std::string& file)
-{
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
 Finished compile(const std::string& source, const std::string& out, unsigned effects,

@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cctype>
-#include <fstream>
+#include <map>
 #include <stdexcept>
 
 namespace diptych {
@@ -23,21 +22,6 @@ constexpr size_t max_image_pixels = size_t(1) << 28;
 [[noreturn]] void fail(const std::string& where, const std::string& what)
 {
     throw std::runtime_error(where + ": " + what);
-}
-
-int components_of(const std::string& type)
-{
-    return type != "sam2D" && std::isdigit(static_cast<unsigned char>(type.back()))
-               ? type.back() - '0'
-               : 1;
-}
-
-std::string trimmed(const std::string& text)
-{
-    const size_t first = text.find_first_not_of(" \t\r");
-    return first == std::string::npos
-               ? ""
-               : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
 int white_image(SceneBuilder& scene)
@@ -98,7 +82,7 @@ TextureInput middling_input(const TextureArgument& argument, SceneBuilder& scene
         return input;
     }
     const bool is_whole = argument.type.starts_with("int") || argument.type.starts_with("uint");
-    input.numbers.assign(length * size_t(components_of(argument.type)), is_whole ? 1 : 0.5);
+    input.numbers.assign(length * size_t(width_of(argument)), is_whole ? 1 : 0.5);
     return input;
 }
 
@@ -124,37 +108,6 @@ TextureFunction translate_file(const TextureFile& file)
         {file.path, fs::absolute(file.path).lexically_normal().string(), file.entry, "t0"});
 }
 
-std::map<std::string, DocumentedArgument> documented_arguments(const fs::path& file)
-{
-    std::map<std::string, DocumentedArgument> all;
-    std::ifstream in(file);
-    for (std::string line; std::getline(in, line);) {
-        const size_t open = line.find(" ("), close = line.find("):");
-        if (!line.starts_with("// ") || open == std::string::npos || close == std::string::npos ||
-            open > close)
-            continue;
-        const std::string name = line.substr(3, open - 3);
-        if (name.empty() || !std::all_of(name.begin(), name.end(), [](unsigned char c) {
-                return std::isalnum(c) || c == '_';
-            }))
-            continue;
-        DocumentedArgument argument;
-        argument.about = trimmed(line.substr(close + 2));
-        const std::string inside = line.substr(open + 2, close - open - 2);
-        const size_t at = inside.rfind("; default ");
-        if (at != std::string::npos) argument.default_value = trimmed(inside.substr(at + 10));
-        all.emplace(name, argument);
-    }
-    return all;
-}
-
-std::string type_of(const TextureArgument& argument)
-{
-    if (!argument.is_array) return argument.type;
-    return argument.length > 0 ? fmt::format("{}[{}]", argument.type, argument.length)
-                               : argument.type + "[]";
-}
-
 TextureNode node_of(const TextureFunction& function, const TextureFile& file,
                     const std::vector<std::string>& given, SceneBuilder& scene)
 {
@@ -174,16 +127,14 @@ TextureNode node_of(const TextureFunction& function, const TextureFile& file,
     }
     TextureNode node;
     node.name = function.entry;
-    const auto documented = documented_arguments(file.path);
     for (const TextureArgument& argument : function.arguments) {
         const auto own = values.find(argument.name);
-        const auto known = documented.find(argument.name);
         TextureInput& input = node.arguments[argument.name];
         if (own != values.end()) {
             input = input_from(argument, own->second, "--set " + argument.name, scene);
-        } else if (known != documented.end() && !known->second.default_value.empty()) {
+        } else if (!argument.default_value.empty()) {
             input =
-                input_from(argument, known->second.default_value,
+                input_from(argument, argument.default_value,
                            fmt::format("{}: the default of {}", file.name, argument.name), scene);
         } else {
             input = middling_input(argument, scene);

@@ -4,7 +4,6 @@
 #include "host/scene/scene_builder.hpp"
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -22,16 +21,6 @@ TextureFile find_texture_file(const std::string& words);
 // The tool's translation under the id t0; debuggers find the file by its whole path. Throws
 // std::runtime_error with the tool's messages.
 TextureFunction translate_file(const TextureFile& file);
-
-// What a comment says of an argument: "// scale (float, above 0; default 3): how many".
-struct DocumentedArgument {
-    std::string default_value;  // JSON, or a word; empty: none
-    std::string about;
-};
-std::map<std::string, DocumentedArgument> documented_arguments(const std::filesystem::path& file);
-
-// "float3[4]"
-std::string type_of(const TextureArgument& argument);
 
 // A node that calls the function, each argument with the value that `given` (ARGUMENT=JSON; for an
 // image the name of its file) names, else with what its comment says is the default, else with one
