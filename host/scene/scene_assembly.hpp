@@ -53,6 +53,7 @@ private:
     void assemble_effects();
 
     // texture_assembly.cpp
+    class TexturePages;
     void survey_textures();
     void assemble_textures();
 

@@ -6,6 +6,7 @@
 #include "common/textures/procedural.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <fmt/format.h>
@@ -17,21 +18,10 @@ namespace {
 constexpr size_t page_words = sizeof(Material) / sizeof(uint);
 constexpr int request_words = 4;
 
-int width_of(const std::string& type)
-{
-    return std::isdigit(static_cast<unsigned char>(type.back())) && type != "sam2D"
-               ? type.back() - '0'
-               : 1;
-}
-
 // Words from one element of an array to the next: those of three take four.
-int stride_of(const std::string& type) { return width_of(type) == 3 ? 4 : width_of(type); }
-
-std::string shown(const TextureArgument& argument)
+int stride_of(const TextureArgument& argument)
 {
-    if (!argument.is_array) return argument.type;
-    return argument.length > 0 ? fmt::format("{}[{}]", argument.type, argument.length)
-                               : argument.type + "[]";
+    return width_of(argument) == 3 ? 4 : width_of(argument);
 }
 
 // The words of the materials' buffer behind the materials, page by page.
@@ -84,7 +74,7 @@ std::string argument_names(const TextureFunction& function)
 {
     std::string names;
     for (const TextureArgument& argument : function.arguments)
-        names += (names.empty() ? "" : ", ") + shown(argument) + " " + argument.name;
+        names += (names.empty() ? "" : ", ") + type_of(argument) + " " + argument.name;
     return names.empty() ? "none" : names;
 }
 
@@ -92,13 +82,13 @@ void check_numbers(const TextureNode& node, const TextureArgument& argument,
                    const TextureInput& value)
 {
     const std::string at = fmt::format("its argument {} ", argument.name);
-    const size_t width = size_t(width_of(argument.type));
+    const size_t width = size_t(width_of(argument));
     const size_t count = value.numbers.size();
     if (!value.images.empty() || value.node >= 0)
-        fail(node, at + fmt::format("is of type {}; give it numbers", shown(argument)));
+        fail(node, at + fmt::format("is of type {}; give it numbers", type_of(argument)));
     if (argument.is_array ? count == 0 || count % width != 0 : count != width)
         fail(node,
-             at + fmt::format("is of type {}, but has {} numbers; give it {}", shown(argument),
+             at + fmt::format("is of type {}, but has {} numbers; give it {}", type_of(argument),
                               count, argument.is_array ? "whole elements" : std::to_string(width)));
     if (argument.is_array && argument.length > 0 && count / width != size_t(argument.length))
         fail(node, at + fmt::format("has {} elements; the function wants {}", count / width,
@@ -132,7 +122,7 @@ void check_argument(const TextureNode& node, const TextureArgument& argument,
     if (value.node < 0) return check_numbers(node, argument, value);
     if (argument.is_array || !argument.type.starts_with("float"))
         fail(node, at + fmt::format("is of type {}, which no node gives; give it {}",
-                                    shown(argument), "numbers"));
+                                    type_of(argument), "numbers"));
 }
 
 void check_node(const TextureNode& node, const TextureFunction& function)
@@ -147,12 +137,12 @@ void check_node(const TextureNode& node, const TextureFunction& function)
     for (const TextureArgument& argument : function.arguments)
         if (!node.arguments.count(argument.name))
             fail(node, fmt::format("its argument {} {} is missing; give it a value",
-                                   shown(argument), argument.name));
+                                   type_of(argument), argument.name));
 }
 
 void add_constants(Pages& pages, const TextureArgument& argument, const TextureInput& value)
 {
-    const int width = width_of(argument.type), stride = stride_of(argument.type);
+    const int width = width_of(argument), stride = stride_of(argument);
     const bool is_int = argument.type.starts_with("int"),
                is_uint = argument.type.starts_with("uint");
     for (size_t k = 0; k < value.numbers.size(); ++k) {
@@ -204,11 +194,158 @@ void SceneAssembly::survey_textures()
     any_tangents_ = (attributes_ & (ATTRIBUTE_Tangent | ATTRIBUTE_Bitangent)) != 0;
 }
 
+namespace {
+
+// The program of one material while it is put together.
+struct MaterialProgram {
+    struct Request {
+        const OcclusionRequest* asked;
+        int distance_word;  // -1: the request's own constant
+    };
+    std::vector<std::array<int, TEXTURE_STEP_WORDS>> steps;  // as they are stored
+    std::vector<Request> requests;
+    std::map<int, int> slot_of;  // by node
+    std::vector<int> group;      // what programs that run side by side have in common
+};
+
+}  // namespace
+
+// Writes the pages behind the materials: for each material that reads nodes, the regions of the
+// nodes' arguments, then the program.
+class SceneAssembly::TexturePages {
+public:
+    explicit TexturePages(SceneAssembly& assembly)
+        : assembly_(assembly), textures_(assembly.data_.textures),
+          pages_(assembly.data_.materials.size())
+    {
+        const TextureSettings& settings = assembly.builder_.texture_settings_;
+        default_distance_ = settings.occlusion_distance > 0
+                                ? settings.occlusion_distance
+                                : 0.1 * double(assembly.data_.settings[0].scene_radius);
+    }
+
+    // `roots`: nodes of the material's slots; `outputs`: of a node, a mask over the results that
+    // evaluate_surface reads.
+    void add_material(size_t m, const std::vector<int>& roots, const std::map<int, int>& outputs)
+    {
+        const GraphProgram order = texture_order(assembly_.builder_.texture_nodes_, roots);
+        textures_.slots = std::max(textures_.slots, order.slots);
+        MaterialProgram program;
+        for (const GraphStep& step : order.steps) {
+            const auto output = outputs.find(step.node);
+            add_step(m, step, output == outputs.end() ? 0 : output->second, program);
+        }
+        assembly_.data_.materials[m].texture_program = add_program(program);
+        textures_.occlusion_results =
+            std::max(textures_.occlusion_results, int(program.requests.size()));
+    }
+
+    void finish() { pages_.append_to(assembly_.data_.materials); }
+
+private:
+    void add_step(size_t m, const GraphStep& step, int outputs, MaterialProgram& program)
+    {
+        const TextureNode& node = assembly_.builder_.texture_nodes_[size_t(step.node)];
+        const TextureFunction& function =
+            assembly_.builder_.texture_functions_[size_t(node.function)];
+        program.slot_of[step.node] = step.slot;
+        const int region = pages_.begin();
+        const std::vector<int> value_words = add_region(region, node, function, program);
+        const int first_request = int(program.requests.size());
+        add_requests(node, function, value_words, program);
+        program.steps.push_back({node.function, region, step.slot, outputs, first_request});
+        program.group.insert(program.group.end(),
+                             {node.function, step.slot, first_request, outputs});
+        const int words =
+            (pages_.end() - region + int(page_words) - 1) / int(page_words) * int(page_words);
+        textures_.attachments.push_back({node.name, int(m), node.function, region, words});
+    }
+
+    // Where the value of each argument lies, by its position; -1: in the stack.
+    std::vector<int> add_region(int region, const TextureNode& node,
+                                const TextureFunction& function, const MaterialProgram& program)
+    {
+        std::vector<int> value_words;
+        for (size_t a = 0; a < function.arguments.size() * TEXTURE_DESCRIPTOR_WORDS; ++a)
+            pages_.add(0);
+        for (size_t a = 0; a < function.arguments.size(); ++a) {
+            const TextureArgument& argument = function.arguments[a];
+            const TextureInput& value = node.arguments.at(argument.name);
+            const int at = region + int(a) * TEXTURE_DESCRIPTOR_WORDS;
+            pages_.align();
+            const int first = value.node >= 0 ? region : pages_.end();
+            value_words.push_back(value.node >= 0 ? -1 : first);
+            size_t length = value.images.size();
+            if (argument.type == "sam2D") {
+                for (const TextureUse& use : value.images)
+                    pages_.add(assembly_.add_image_slot(use, !value.is_linear, 0));
+            } else {
+                length = value.numbers.size() / size_t(width_of(argument));
+                add_constants(pages_, argument, value);
+            }
+            pages_[at] = uint(value.node >= 0 ? program.slot_of.at(value.node) : -1);
+            pages_[at + 1] = uint(first);
+            pages_[at + 2] = uint(length);
+        }
+        pages_.align();
+        return value_words;
+    }
+
+    void add_requests(const TextureNode& node, const TextureFunction& function,
+                      const std::vector<int>& value_words, MaterialProgram& program) const
+    {
+        for (const OcclusionRequest& request : function.occlusion) {
+            if (request.distance_argument < 0) {
+                program.requests.push_back({&request, -1});
+                continue;
+            }
+            const size_t k = size_t(request.distance_argument);
+            const std::string& name = function.arguments[k].name;
+            if (value_words[k] < 0) {
+                const int from = node.arguments.at(name).node;
+                fail(node, fmt::format("the distance of its occlusion, {}, comes from node {}; "
+                                       "give it a number",
+                                       name, assembly_.builder_.texture_nodes_[size_t(from)].name));
+            }
+            program.requests.push_back({&request, value_words[k]});
+        }
+    }
+
+    // Returns the program's first word.
+    int add_program(const MaterialProgram& program)
+    {
+        const int group = groups_.try_emplace(program.group, int(groups_.size())).first->second;
+        const int header = pages_.begin();
+        const int first_request =
+            header + TEXTURE_PROGRAM_WORDS + int(program.steps.size()) * TEXTURE_STEP_WORDS;
+        const int constants = first_request + int(program.requests.size()) * request_words;
+        for (const int word :
+             {int(program.steps.size()), group, first_request, int(program.requests.size())})
+            pages_.add(word);
+        for (const auto& step : program.steps)
+            for (const int word : step) pages_.add(word);
+        for (size_t k = 0; k < program.requests.size(); ++k) {
+            const int own = program.requests[k].distance_word;
+            pages_.add(own >= 0 ? own : constants + 1 + int(k));
+            pages_.add(int(program.requests[k].asked->hemisphere));
+            pages_.add(program.requests[k].asked->is_same_object ? 1 : 0);
+            pages_.add(constants);
+        }
+        pages_.add(default_distance_);
+        for (const auto& request : program.requests) pages_.add(request.asked->distance);
+        return header;
+    }
+
+    SceneAssembly& assembly_;
+    SceneTextures& textures_;
+    Pages pages_;
+    std::map<std::vector<int>, int> groups_;
+    double default_distance_ = 0;
+};
+
 // Behind the materials: a program for each that reads nodes, a region for each node it uses.
 void SceneAssembly::assemble_textures()
 {
-    const auto& nodes = builder_.texture_nodes_;
-    const auto& functions = builder_.texture_functions_;
     SceneTextures& textures = data_.textures;
     Settings& settings = data_.settings[0];
     std::ranges::fill(settings.texture_output, -1);
@@ -216,122 +353,31 @@ void SceneAssembly::assemble_textures()
     settings.texture_uv_set[1] = uv_slots_[1];
     settings.occlusion_rays = std::clamp(builder_.texture_settings_.occlusion_rays, 1, 256);
     settings.time = float(builder_.texture_settings_.time);
-    const double asked = builder_.texture_settings_.occlusion_distance;
-    const double default_distance = asked > 0 ? asked : 0.1 * double(settings.scene_radius);
     textures.first_page = int(data_.materials.size());
     if (std::ranges::find(node_used_, 1) == node_used_.end()) return;
 
-    textures.functions = functions;
+    textures.functions = builder_.texture_functions_;
     textures.attributes = attributes_;
-    Pages pages(data_.materials.size());
-    std::map<std::vector<int>, int> groups;
+    TexturePages pages(*this);
     for (size_t m = 0; m < builder_.materials_.size(); ++m) {
         if (!is_used(int(m))) continue;
-        Material& material = data_.materials[m];
-        const int* const packed[SLOT_COUNT] = {
-            &material.base_slot,     &material.metallic_roughness_slot,
-            &material.normal_slot,   &material.emission_slot,
-            &material.specular_slot, &material.specular_color_slot};
+        const Material& material = data_.materials[m];
+        const int packed[SLOT_COUNT] = {material.base_slot,     material.metallic_roughness_slot,
+                                        material.normal_slot,   material.emission_slot,
+                                        material.specular_slot, material.specular_color_slot};
         std::vector<int> roots;
-        std::map<int, int> outputs;  // of a node, a mask
+        std::map<int, int> outputs;
         const auto slots = slots_of(builder_.materials_[m]);
         for (size_t s = 0; s < SLOT_COUNT; ++s) {
-            if (*packed[s] != TEXTURE_PROCEDURAL) continue;
+            if (packed[s] != TEXTURE_PROCEDURAL) continue;
             int& output = settings.texture_output[s];
             if (output < 0) output = textures.outputs++;
             roots.push_back(slots[s]->node);
             outputs[slots[s]->node] |= 1 << output;
         }
-        if (roots.empty()) continue;
-        const GraphProgram program = texture_order(nodes, roots);
-        textures.slots = std::max(textures.slots, program.slots);
-
-        std::map<int, int> slot_of;
-        std::vector<int> regions, group;
-        struct Request {
-            const OcclusionRequest* asked;
-            int distance_word;
-        };
-        std::vector<Request> requests;
-        std::vector<int> first_request;
-        for (const GraphStep& step : program.steps) {
-            const TextureNode& node = nodes[size_t(step.node)];
-            const TextureFunction& function = functions[size_t(node.function)];
-            slot_of[step.node] = step.slot;
-            const int region = pages.begin();
-            regions.push_back(region);
-            std::vector<int> value_words;
-            for (size_t a = 0; a < function.arguments.size() * TEXTURE_DESCRIPTOR_WORDS; ++a)
-                pages.add(0);
-            for (size_t a = 0; a < function.arguments.size(); ++a) {
-                const TextureArgument& argument = function.arguments[a];
-                const TextureInput& value = node.arguments.at(argument.name);
-                const int at = region + int(a) * TEXTURE_DESCRIPTOR_WORDS;
-                pages.align();
-                const int first = value.node >= 0 ? region : pages.end();
-                value_words.push_back(value.node >= 0 ? -1 : first);
-                size_t length = value.images.size();
-                if (argument.type == "sam2D") {
-                    for (const TextureUse& use : value.images)
-                        pages.add(add_image_slot(use, !value.is_linear, 0));
-                } else {
-                    length = value.numbers.size() / size_t(width_of(argument.type));
-                    add_constants(pages, argument, value);
-                }
-                pages[at] = uint(value.node >= 0 ? slot_of[value.node] : -1);
-                pages[at + 1] = uint(first);
-                pages[at + 2] = uint(length);
-            }
-            pages.align();
-            first_request.push_back(int(requests.size()));
-            for (const OcclusionRequest& request : function.occlusion) {
-                const int k = request.distance_argument;
-                if (k >= 0 && value_words[size_t(k)] < 0)
-                    fail(node,
-                         fmt::format(
-                             "the distance of its occlusion, {}, comes from node {}; "
-                             "give it a number",
-                             function.arguments[size_t(k)].name,
-                             nodes[size_t(
-                                       node.arguments.at(function.arguments[size_t(k)].name).node)]
-                                 .name));
-                requests.push_back({&request, k >= 0 ? value_words[size_t(k)] : -1});
-            }
-            group.insert(group.end(), {node.function, step.slot, first_request.back(),
-                                       outputs.count(step.node) ? outputs[step.node] : 0});
-            const int words =
-                (pages.end() - region + int(page_words) - 1) / int(page_words) * int(page_words);
-            textures.attachments.push_back({node.name, int(m), node.function, region, words});
-        }
-        const int group_number = groups.try_emplace(group, int(groups.size())).first->second;
-        material.texture_program = pages.begin();
-        const int header = material.texture_program;
-        const int first_request_word =
-            header + TEXTURE_PROGRAM_WORDS + int(program.steps.size()) * TEXTURE_STEP_WORDS;
-        const int constants = first_request_word + int(requests.size()) * request_words;
-        pages.add(int(program.steps.size()));
-        pages.add(group_number);
-        pages.add(first_request_word);
-        pages.add(int(requests.size()));
-        for (size_t k = 0; k < program.steps.size(); ++k) {
-            const GraphStep& step = program.steps[k];
-            const int words[TEXTURE_STEP_WORDS] = {
-                nodes[size_t(step.node)].function, regions[k], step.slot,
-                outputs.count(step.node) ? outputs[step.node] : 0, first_request[k]};
-            for (const int word : words) pages.add(word);
-        }
-        for (size_t k = 0; k < requests.size(); ++k) {
-            const int own = requests[k].distance_word;
-            pages.add(own >= 0 ? own : constants + 1 + int(k));
-            pages.add(int(requests[k].asked->hemisphere));
-            pages.add(requests[k].asked->is_same_object ? 1 : 0);
-            pages.add(constants);
-        }
-        pages.add(default_distance);
-        for (const Request& request : requests) pages.add(request.asked->distance);
-        textures.occlusion_results = std::max(textures.occlusion_results, int(requests.size()));
+        if (!roots.empty()) pages.add_material(m, roots, outputs);
     }
-    pages.append_to(data_.materials);
+    pages.finish();
     data_.effects |= EFFECT_PROCEDURAL;
     if (textures.occlusion_results > 0) data_.effects |= EFFECT_TEXTURE_OCCLUSION;
     data_.effects &= ~builder_.disabled_effects_;
