@@ -27,12 +27,7 @@ static TextureValue call(TextureContext* tx, int function, int region)
     switch (function) {
         TEXTURE_FUNCTIONS(CALL_FUNCTION)
     }
-    TextureValue result;
-    result.r = value.x;
-    result.g = value.y;
-    result.b = value.z;
-    result.a = value.w;
-    return result;
+    return texture_value(value);
 }
 
 static void evaluate_textures(const Scene* scene, const Paths* paths, int i)

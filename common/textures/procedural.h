@@ -154,28 +154,26 @@ SHARED TextureContext texture_context(const Scene* scene, const Paths* paths, in
     return tx;
 }
 
+SHARED TextureValue texture_value(float4 from)
+{
+    TextureValue value;
+    value.r = from.x;
+    value.g = from.y;
+    value.b = from.z;
+    value.a = from.w;
+    return value;
+}
+
 SHARED TextureValue texture_texel(const Scene* scene, int slot, float u, float v)
 {
-    const float4 texel = texture_read(scene, slot, make_float2(u, v));
-    TextureValue value;
-    value.r = texel.x;
-    value.g = texel.y;
-    value.b = texel.z;
-    value.a = texel.w;
-    return value;
+    return texture_value(texture_read(scene, slot, make_float2(u, v)));
 }
 
 // The same with another wrap and filter than the slot's (see TextureSlot).
 SHARED TextureValue texture_fetch(const Scene* scene, int slot, float u, float v, int wrap,
                                   int filter)
 {
-    const float4 texel = texture_read_with(scene, slot, make_float2(u, v), wrap, filter);
-    TextureValue value;
-    value.r = texel.x;
-    value.g = texel.y;
-    value.b = texel.z;
-    value.a = texel.w;
-    return value;
+    return texture_value(texture_read_with(scene, slot, make_float2(u, v), wrap, filter));
 }
 
 // Before a step is run: its own occlusion results, a budget of its own.
