@@ -30,6 +30,11 @@ SHARED int float_to_int(float x)
     return is_above ? 2147483647 : (is_below ? -2147483647 - 1 : value);
 }
 
+SHARED float3 select3(int condition, float3 a, float3 b)
+{
+    return make_float3(condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z);
+}
+
 SHARED float vec_dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 SHARED float3 vec_cross(float3 a, float3 b)

@@ -10,11 +10,6 @@
 #define SURFACE_LIT 1
 #define SURFACE_UNLIT 2
 
-SHARED float3 select3(int condition, float3 a, float3 b)
-{
-    return make_float3(condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z);
-}
-
 // Reflectance at normal incidence of the dielectric interface (KHR_materials_specular,
 // KHR_materials_ior).
 SHARED float3 surface_dielectric_f0(const Scene* scene, int material, float4 specular_color)

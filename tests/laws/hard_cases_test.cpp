@@ -91,6 +91,20 @@ TEST_P(HardCases, ThinWallsDoNotLeak)
     EXPECT_LT(measure(finish(scene, 8)).mean(), 1e-3);
 }
 
+// A strip 6 km long and 4 m wide under an even sky: what is scattered meets nothing more.
+TEST_P(HardCases, LongStripsDoNotShadeThemselves)
+{
+    SceneBuilder scene;
+    const Transform place = rotation_about({0.3, 0.8, 0.5}, 0.7);
+    const int floor = scene.add_material(lambert(0.5f));
+    scene.place(scene.add_mesh(quad_mesh({-3000, 0, -2}, {0, 0, 4}, {6000, 0, 0}, floor)), place);
+    scene.set_environment(environment_of([](const Vec3&) { return 1.0; }));
+    scene.set_camera(
+        {.eye = place.point({1000, 3, 0}), .target = place.point({1000, 0, 0}), .fov = 0.4});
+    scene.set_picture_size(16, 16);
+    EXPECT_TRUE(obeys(measure(finish(scene, 4), 3), 0.5));
+}
+
 Measurement expect_finite(Measurement measured)
 {
     EXPECT_EQ(measured.faults, 0u);
