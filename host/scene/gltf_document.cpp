@@ -312,21 +312,26 @@ std::span<const std::uint8_t> GltfDocument::buffer_view(int index)
     return std::span(buffer(view.buffer)).subspan(view.byteOffset, view.byteLength);
 }
 
-Picture GltfDocument::image(int index, const std::string& user, size_t max_pixels)
+StoredImage GltfDocument::stored_image(int index, const std::string& user)
 {
     const Source& source = image_sources_[size_t(index)];
-    const std::string where = fmt::format("images[{}]", index);
+    StoredImage image;
+    image.where = fmt::format("images[{}]{}", index, user);
     if (source.buffer_view >= 0) {
-        return read_picture(buffer_view(source.buffer_view), where + user, max_pixels);
+        image.bytes = buffer_view(source.buffer_view);
+        return image;
     }
     if (source.uri.empty()) {
-        throw SceneError(where + user + ": has neither a URI nor a buffer view; repair the file");
+        throw SceneError(image.where + ": has neither a URI nor a buffer view; repair the file");
     }
     if (is_data_uri(source.uri)) {
-        return read_picture(data_uri_bytes(source.uri, where), where + user, max_pixels);
+        image.storage = data_uri_bytes(source.uri, fmt::format("images[{}]", index));
+    } else {
+        image.where = fmt::format("images[{}] ({}){}", index, printable(source.uri), user);
+        image.storage = read_file(resolved(source.uri, image.where), image.where);
     }
-    const std::string named = fmt::format("{} ({}){}", where, printable(source.uri), user);
-    return read_picture(read_file(resolved(source.uri, named), named), named, max_pixels);
+    image.bytes = image.storage;
+    return image;
 }
 
 }  // namespace diptych

@@ -16,6 +16,17 @@ namespace diptych {
 // without a buffer view, which the parser would refuse as indices.
 inline constexpr const char* implied_indices_key = "_INDICES";
 
+// An image file in memory.
+struct StoredImage {
+    StoredImage() = default;
+    StoredImage(StoredImage&&) = default;  // a moved vector keeps its bytes where they are
+    StoredImage& operator=(StoredImage&&) = default;
+
+    std::span<const std::uint8_t> bytes;  // of `storage`, or of the document's buffers
+    std::vector<std::uint8_t> storage;
+    std::string where;  // for errors
+};
+
 class GltfDocument {
 public:
     // Reads .gltf and .glb, told apart by their first bytes. URIs may not leave the file's folder
@@ -27,8 +38,8 @@ public:
     const tinygltf::Model& model() const { return model_; }
 
     std::span<const std::uint8_t> buffer_view(int view);
-    // Image `image` of the file; `where` names its user in errors.
-    Picture image(int image, const std::string& where, size_t max_pixels);
+    // Image `image` of the file as it is stored; `user` names who uses it in errors.
+    StoredImage stored_image(int image, const std::string& user);
     // The extension DIPTYCH_procedural_texture as it stands in the file, unchecked: that of the
     // document, and that of each material; null where there is none.
     const nlohmann::json& textures() const { return textures_; }

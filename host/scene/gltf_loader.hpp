@@ -46,6 +46,8 @@ private:
     TextureUse texture_use(int texture, int uv_set, const tinygltf::ExtensionMap& extensions) const;
     void read_images();
     int image_of(int texture) const;
+    int used_image(int texture, const std::string& user) const;
+    void decode(const std::vector<StoredImage>& images);
 
     // gltf_textures.cpp
     void add_textures();

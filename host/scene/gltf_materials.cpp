@@ -1,6 +1,8 @@
 // Materials and the images they read.
 #include "host/scene/gltf_loader.hpp"
 
+#include "kernels_cpu/parallel_for.hpp"
+
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
@@ -154,6 +156,43 @@ int GltfLoader::image_of(int texture) const
     return source.source;
 }
 
+// The same for a texture that `user` cannot do without.
+int GltfLoader::used_image(int texture, const std::string& user) const
+{
+    const int image = image_of(texture);
+    if (image >= 0) {
+        return image;
+    }
+    const bool is_basis =
+        model_.textures[size_t(texture)].extensions.count("KHR_texture_basisu") > 0;
+    throw SceneError(
+        fmt::format("textures[{}]{}: {}; export it with PNG or JPEG images", texture, user,
+                    is_basis ? "has only a KTX2 image (KHR_texture_basisu), which cannot be read"
+                             : "has no image"));
+}
+
+// Images take most of a textured scene's loading: on all threads. Of several broken ones the first
+// is named.
+void GltfLoader::decode(const std::vector<StoredImage>& images)
+{
+    std::vector<Picture> pictures(images.size());
+    std::vector<std::exception_ptr> errors(images.size());
+    parallel_for(0, int(images.size()), [&](int index) {
+        const size_t k = size_t(index);
+        try {
+            pictures[k] = read_picture(images[k].bytes, images[k].where, options_.max_image_pixels);
+        } catch (...) {
+            errors[k] = std::current_exception();
+        }
+    });
+    for (size_t k = 0; k < images.size(); ++k) {
+        if (errors[k]) {
+            std::rethrow_exception(errors[k]);
+        }
+        scene_.add_image(std::move(pictures[k]));
+    }
+}
+
 // Reads every image that a material in use reads, once, and renumbers the materials' textures.
 void GltfLoader::read_images()
 {
@@ -166,25 +205,17 @@ void GltfLoader::read_images()
         }
     }
     std::map<int, int> numbers;  // of images of the file, in the builder
+    std::vector<StoredImage> images;
     const auto resolve = [&](TextureUse& use, const std::string& user) {
         if (use.image < 0) {
             return;
         }
-        const int texture = use.image;
-        const int image = image_of(texture);
-        if (image < 0) {
-            const bool is_basis =
-                model_.textures[size_t(texture)].extensions.count("KHR_texture_basisu") > 0;
-            throw SceneError(fmt::format(
-                "textures[{}]{}: {}; export it with PNG or JPEG images", texture, user,
-                is_basis ? "has only a KTX2 image (KHR_texture_basisu), which cannot be read"
-                         : "has no image"));
+        const int image = used_image(use.image, user);
+        const auto [at, is_new] = numbers.try_emplace(image, int(images.size()));
+        if (is_new) {
+            images.push_back(document_.stored_image(image, user));
         }
-        if (!numbers.count(image)) {
-            numbers[image] =
-                scene_.add_image(document_.image(image, user, options_.max_image_pixels));
-        }
-        use.image = numbers[image];
+        use.image = at->second;
     };
     for (TextureNode& node : texture_nodes_) {
         for (auto& [name, value] : node.arguments) {
@@ -204,6 +235,7 @@ void GltfLoader::read_images()
             resolve(*use, fmt::format(", of material \"{}\"", m.name));
         }
     }
+    decode(images);
 }
 
 }  // namespace diptych

@@ -14,6 +14,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <unistd.h>
 
 namespace diptych {
@@ -182,21 +183,29 @@ bool is_ktx2(std::span<const std::uint8_t> b)
 }
 
 // libpng writes its complaints to standard error, where an error of ours is one line and a warning
-// about a colour profile is noise. Nothing else can be told to it through OpenImageIO.
+// about a colour profile is noise. Nothing else can be told to it through OpenImageIO. Silent as
+// long as any thread holds one.
 class QuietStandardError {
 public:
-    QuietStandardError() : saved_(dup(STDERR_FILENO))
+    QuietStandardError()
     {
-        const int nothing = open("/dev/null", O_WRONLY);
-        if (nothing < 0) {
+        const std::lock_guard lock(mutex_);
+        if (holders_++ > 0) {
             return;
         }
-        dup2(nothing, STDERR_FILENO);
-        close(nothing);
+        const int nothing = open("/dev/null", O_WRONLY);
+        saved_ = nothing < 0 ? -1 : dup(STDERR_FILENO);
+        if (saved_ >= 0) {
+            dup2(nothing, STDERR_FILENO);
+        }
+        if (nothing >= 0) {
+            close(nothing);
+        }
     }
     ~QuietStandardError()
     {
-        if (saved_ < 0) {
+        const std::lock_guard lock(mutex_);
+        if (--holders_ > 0 || saved_ < 0) {
             return;
         }
         dup2(saved_, STDERR_FILENO);
@@ -206,7 +215,9 @@ public:
     QuietStandardError& operator=(const QuietStandardError&) = delete;
 
 private:
-    int saved_;
+    static inline std::mutex mutex_;
+    static inline int holders_ = 0;
+    static inline int saved_ = -1;
 };
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file, const std::string& where)
