@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace diptych {
@@ -55,6 +56,16 @@ int group_size(const opencl::Device& device)
     return size;
 }
 
+// What the device says, or less where DIPTYCH_LARGEST_ALLOCATION (bytes) says so: how a device with
+// narrow limits behaves can be tried on any other.
+size_t largest_allocation(const opencl::Device& device)
+{
+    const auto own = size_t(device.number<cl_ulong>(CL_DEVICE_MAX_MEM_ALLOC_SIZE));
+    const char* limit = std::getenv("DIPTYCH_LARGEST_ALLOCATION");
+    const unsigned long long wanted = limit ? std::strtoull(limit, nullptr, 10) : 0;
+    return wanted > 0 ? std::min<size_t>(own, wanted) : own;
+}
+
 DeviceInfo describe(const opencl::Device& device, int index)
 {
     DeviceInfo info;
@@ -65,7 +76,7 @@ DeviceInfo describe(const opencl::Device& device, int index)
     info.version = device.text(CL_DEVICE_VERSION);
     info.driver = device.text(CL_DRIVER_VERSION);
     info.memory_bytes = size_t(device.number<cl_ulong>(CL_DEVICE_GLOBAL_MEM_SIZE));
-    info.largest_allocation = size_t(device.number<cl_ulong>(CL_DEVICE_MAX_MEM_ALLOC_SIZE));
+    info.largest_allocation = largest_allocation(device);
     info.group_size = group_size(device);
     info.is_cpu = (device.number<cl_device_type>(CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
     info.why_not = why_unusable(device);

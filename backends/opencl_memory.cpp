@@ -8,6 +8,7 @@ namespace {
 
 constexpr int paths_per_item = QUANTUM << (2 * BLOCK_SHIFT);
 constexpr int results_per_item = 1 << (2 * BLOCK_SHIFT);
+constexpr size_t small_items = 4;     // of a quarter of a block's pixels, in place of a block
 constexpr int most_items = 1024;      // 4 million paths: what keeps the largest GPUs busy
 constexpr int most_items_of_cpu = 8;  // 32 thousand paths: what stays in a processor's caches
 
@@ -32,7 +33,16 @@ size_t item_bytes(const SceneData& scene)
     const size_t lists = 3 * sizeof(int);  // live, twice, and at most one sum a path
     const size_t planes = plane_bytes(path_rows()) + plane_bytes(texture_rows(scene));
     return paths_per_item * (planes + lists) + results_per_item * plane_bytes(result_rows()) +
-           sizeof(WorkItem);
+           small_items * sizeof(WorkItem);
+}
+
+// Of the buffers that a dispatch needs, the largest one's share of an item.
+size_t widest_buffer(const SceneData& scene)
+{
+    int components = 1;
+    for (const std::vector<PlaneRow>& rows : {path_rows(), texture_rows(scene)})
+        for (const PlaneRow& row : rows) components = std::max(components, row.components);
+    return sizeof(float) * size_t(components) * paths_per_item;
 }
 
 size_t scene_bytes(const SceneData& scene)
@@ -111,7 +121,7 @@ DispatchMemory::DispatchMemory(const opencl::Context& context, const SceneData& 
       path_planes(planes(context, path_rows(), paths)),
       result_planes(planes(context, result_rows(), results)),
       texture_planes(planes(context, texture_rows(scene), paths)),
-      items(context.buffer(sizeof(WorkItem) * size_t(item_count), "items"))
+      items(context.buffer(sizeof(WorkItem) * small_items * size_t(item_count), "items"))
 {
     for (opencl::Buffer& list : live) list = context.buffer(sizeof(int) * size_t(paths), "live");
     const int groups = (paths + group_size - 1) / group_size;
@@ -131,7 +141,12 @@ Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory
             "opencl: " + device.name + ": " + megabytes(budget) + " do not hold the scene (" +
             megabytes(taken) + ") and one block of paths (" + megabytes(item_bytes(scene)) + "); " +
             (budget < memory_bytes ? "choose a device with more memory" : "raise --memory"));
-    const size_t widest = 3 * sizeof(float) * paths_per_item;  // the buffer of a float3 row
+    const size_t widest = widest_buffer(scene);
+    if (device.largest_allocation < widest)
+        throw std::runtime_error("opencl: " + device.name + ": allocates at most " +
+                                 megabytes(device.largest_allocation) +
+                                 " at once, one block of paths needs " + megabytes(widest) +
+                                 "; choose another device or --backend cpu");
     const int most = device.is_cpu ? most_items_of_cpu : most_items;
     const size_t items = std::min(
         {(budget - taken) / item_bytes(scene), device.largest_allocation / widest, size_t(most)});

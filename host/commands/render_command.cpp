@@ -36,10 +36,9 @@ image::View parse_view(const std::string& text)
     throw std::runtime_error("--view " + text + ": no such view; use standard, neutral or filmic");
 }
 
-void print_pixel(const image::Picture& picture, const Pixel& pixel)
+void print_pixel(const Film& film, const Pixel& pixel)
 {
-    const image::Layer& beauty = image::beauty_of(picture);
-    const float* value = &beauty.pixels[size_t(pixel.y * picture.width + pixel.x) * 4];
+    const std::array<float, 3> value = film.radiance(pixel.x, pixel.y);
     fmt::print("pixel {},{}: {:.9g} {:.9g} {:.9g}\n", pixel.x, pixel.y, value[0], value[1],
                value[2]);
 }
@@ -129,6 +128,7 @@ int run_render_command(const RenderCommand& command)
     for (const std::string& path : run.outputs) image::check_writable(path);
     if (!run.json.empty() && run.json != "-") image::check_file_writable(run.json);
 
+    watch_for_interrupts();
     RenderOptions options;
     options.samples = run.scene.samples;
     options.pixel = parse_pixel(run.pixel, run.scene.size);
@@ -136,14 +136,15 @@ int run_render_command(const RenderCommand& command)
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
     SceneData scene = load_from_flags(run.scene);
-    if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options.samples);
+    if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
     backend->upload(scene);
 
     ProgressBar bar;
     if (!run.is_quiet) options.progress = [&](const Progress& progress) { bar.show(progress); };
-    watch_for_interrupts();
     const RenderResult result = render(*backend, scene, options);
     if (!run.is_quiet) bar.finish();
+    if (result.statistics.paths == 0)
+        fmt::print(stderr, "notice: interrupted before the first samples; pictures are black\n");
 
     const Faults& faults = result.film.faults();
     const std::optional<FaultPlace> place = find_fault(*backend, faults, options.samples);
@@ -152,10 +153,11 @@ int run_render_command(const RenderCommand& command)
                                  "; render without --strict to drop them");
     if (faults.count > 0) fmt::print(stderr, "notice: {}\n", fault_text(faults, place));
 
-    image::Picture picture = result.film.picture();
+    image::Picture picture;
+    if (!run.outputs.empty() || !run.json.empty()) picture = result.film.picture();
     if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
     for (const std::string& path : run.outputs) image::write_picture(path, picture, write);
-    if (options.pixel) print_pixel(picture, *options.pixel);
+    if (options.pixel) print_pixel(result.film, *options.pixel);
     if (!run.is_quiet) print_summary(run, result);
     if (!run.json.empty()) {
         const std::string report = json_report(run, scene, *backend, result, picture, place) + "\n";

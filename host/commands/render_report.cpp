@@ -54,8 +54,10 @@ const char* faulty_buffer(const StageState& state, size_t p)
 
 }  // namespace
 
-void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan, int samples)
+void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan,
+                const RenderOptions& options)
 {
+    const int samples = options.samples;
     const Settings& settings = scene.settings[0];
     for (const std::string& line : scene.notices) fmt::print(stderr, "notice: {}\n", line);
     if (samples < standard_error_samples)
@@ -69,8 +71,7 @@ void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan
         stderr,
         "memory: scene {}, structure about {}, paths {} ({} a dispatch), film {} on the host\n",
         megabytes(plan.scene_bytes), megabytes(plan.structure_bytes), megabytes(plan.path_bytes),
-        plan.items * QUANTUM << (2 * BLOCK_SHIFT),
-        megabytes(Film::bytes(settings.width, settings.height, samples)));
+        plan.items * QUANTUM << (2 * BLOCK_SHIFT), megabytes(film_bytes(settings, options)));
 }
 
 ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -160,7 +161,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
          {{"scene", result.plan.scene_bytes},
           {"structure", result.plan.structure_bytes},
           {"paths", result.plan.path_bytes},
-          {"film", Film::bytes(picture.width, picture.height, command.scene.samples)}}},
+          {"film", Film::bytes(result.film.data().window, result.film.data().batches)}}},
         {"dispatch_paths", result.plan.items * QUANTUM << (2 * BLOCK_SHIFT)},
         {"effects", effect_names(scene.effects)},
         {"degenerate_triangles", scene.degenerate_triangles},

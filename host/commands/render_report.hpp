@@ -10,7 +10,8 @@
 namespace diptych {
 
 // Lines before the render: effects, memory, notices.
-void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan, int samples);
+void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan,
+                const RenderOptions& options);
 
 // A bar when standard error is a terminal, a line now and then when not.
 class ProgressBar {

@@ -70,14 +70,20 @@ Rgb view_filmic(Rgb color)
     return color;
 }
 
-Rgb display_value(Rgb radiance, float exposure, View view)
+Rgb display_light(Rgb radiance, float exposure, View view)
 {
     const float scale = std::exp2(exposure);
     for (float& c : radiance) c = std::isnan(c) ? 0.0f : std::clamp(c * scale, 0.0f, 1e9f);
     if (view == View::Neutral) radiance = view_neutral(radiance);
     if (view == View::Filmic) radiance = view_filmic(radiance);
-    for (float& c : radiance) c = std::clamp(srgb_encode(c), 0.0f, 1.0f);
     return radiance;
+}
+
+Rgb display_value(Rgb radiance, float exposure, View view)
+{
+    Rgb value = display_light(radiance, exposure, view);
+    for (float& c : value) c = std::clamp(srgb_encode(c), 0.0f, 1.0f);
+    return value;
 }
 
 }  // namespace diptych::image

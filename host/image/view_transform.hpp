@@ -18,6 +18,9 @@ Rgb view_neutral(
     Rgb color);  // Khronos PBR Neutral: base colours up to 0.76 keep their hue and saturation
 Rgb view_filmic(Rgb color);  // Stephen Hill's fit of the ACES RRT and sRGB ODT
 
+// Linear display light of linear radiance, 2^exposure times as bright; above 1 a display clips.
+Rgb display_light(Rgb radiance, float exposure, View view);
+
 // sRGB values in 0..1 of linear radiance, 2^exposure times as bright.
 Rgb display_value(Rgb radiance, float exposure, View view);
 

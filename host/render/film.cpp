@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace diptych {
 namespace {
-
-int batches_for(int samples) { return samples >= standard_error_samples ? batch_count : 1; }
 
 // x or y of entry k of a work item: the even bits of its Morton code.
 int even_bits(int k)
@@ -17,145 +14,223 @@ int even_bits(int k)
     return out;
 }
 
-// Sums of finite samples may overflow; below this, those of all batches together do not.
-constexpr float largest_sum = std::numeric_limits<float>::max() / (2 * batch_count);
+bool contains(const Window& window, int x, int y)
+{
+    return x >= window.x && y >= window.y && x < window.x + window.width &&
+           y < window.y + window.height;
+}
 
-bool has_room(float sum, float more) { return std::abs(sum + more) <= largest_sum; }
+// A layer of the whole picture from one of the window: zero outside.
+template<class Value>
+std::vector<Value> padded(std::vector<Value> in, const Window& window, int width, int height)
+{
+    const size_t channels = in.size() / window.pixels();
+    if (window.width == width && window.height == height) return in;
+    std::vector<Value> out(size_t(width) * size_t(height) * channels);
+    const size_t row = size_t(window.width) * channels;
+    for (int y = 0; y < window.height; ++y)
+        std::copy_n(in.begin() + std::ptrdiff_t(size_t(y) * row), row,
+                    out.begin() +
+                        std::ptrdiff_t((size_t(window.y + y) * size_t(width) + size_t(window.x)) *
+                                       channels));
+    return out;
+}
 
 }  // namespace
 
-Film::Film(int width, int height, int samples)
-    : width_(width), height_(height), batches_(batches_for(samples))
+int batches_of(int end) { return std::clamp((end + QUANTUM - 1) / QUANTUM, 1, batch_count); }
+
+Film::Film(int width, int height, const Window& window, int batches)
+    : width_(width), height_(height)
 {
-    const size_t pixels = size_t(width) * size_t(height);
-    radiance_.assign(pixels * size_t(batches_) * 3, 0.0f);
-    batch_samples_.assign(pixels * size_t(batches_), 0);
-    alpha_.assign(pixels, 0.0f);
-    albedo_.assign(pixels * 3, 0.0f);
-    normal_.assign(pixels * 3, 0.0f);
-    distance_.assign(pixels, 0.0f);
-    object_.assign(pixels, -1);
-    material_.assign(pixels, -1);
+    data_.window = window;
+    data_.batches = batches;
+    const size_t pixels = window.pixels();
+    data_.radiance.assign(pixels * size_t(batches) * 3, 0.0);
+    data_.batch_samples.assign(pixels * size_t(batches), 0);
+    data_.alpha.assign(pixels, 0.0f);
+    data_.albedo.assign(pixels * 3, 0.0);
+    data_.normal.assign(pixels * 3, 0.0);
+    data_.distance.assign(pixels, 0.0);
+    data_.object.assign(pixels, -1);
+    data_.material.assign(pixels, -1);
 }
 
-size_t Film::bytes(int width, int height, int samples)
+size_t Film::bytes(const Window& window, int batches)
 {
-    return size_t(width) * size_t(height) * size_t(batches_for(samples) * 16 + 40);
+    const size_t of_batch = 3 * sizeof(double) + sizeof(int);
+    const size_t of_pixel = 7 * sizeof(double) + sizeof(float) + 2 * sizeof(int);
+    return window.pixels() * (of_batch * size_t(batches) + of_pixel);
+}
+
+size_t Film::pixel_at(int x, int y) const
+{
+    const Window& window = data_.window;
+    return size_t(y - window.y) * size_t(window.width) + size_t(x - window.x);
 }
 
 void Film::add(const Dispatch& dispatch, const Results& results)
 {
     for (size_t k = 0; k < dispatch.items.size(); ++k) {
         const WorkItem& item = dispatch.items[k];
-        const int batch = batches_ == 1 ? 0 : item.first_sample / QUANTUM % batch_count;
         for (int in_item = 0; in_item < 1 << dispatch.pixel_shift; ++in_item) {
             const int x = item.x + even_bits(in_item);
             const int y = item.y + even_bits(in_item >> 1);
-            if (x >= width_ || y >= height_) continue;
+            if (!contains(data_.window, x, y)) continue;
             const int r = (int(k) << dispatch.pixel_shift) | in_item;
-            const bool is_added = add_pixel(y * width_ + x, batch, dispatch, results, r);
+            const bool is_added = add_pixel(pixel_at(x, y), item, dispatch, results, r);
             const int dropped = is_added ? results.fault[size_t(r)] : dispatch.samples;
             if (dropped > 0) {
-                if (faults_.count == 0) faults_ = {0, x, y, item.first_sample};
-                faults_.count += unsigned(dropped);
+                if (data_.faults.count == 0) data_.faults = {0, x, y, item.first_sample};
+                data_.faults.count += unsigned(dropped);
             }
         }
     }
 }
 
-bool Film::add_pixel(int pixel, int batch, const Dispatch& dispatch, const Results& results, int r)
+bool Film::add_pixel(size_t p, const WorkItem& item, const Dispatch& dispatch,
+                     const Results& results, int r)
 {
-    const size_t p = size_t(pixel);
     const size_t n = size_t(dispatch.results());
-    const size_t b = p * size_t(batches_) + size_t(batch);
-    bool fits = true;
+    const size_t batch = size_t(item.first_sample) / QUANTUM % batch_count;
+    const size_t b = p * size_t(data_.batches) + batch;
+    bool is_finite = true;
     for (size_t c = 0; c < 3; ++c)
-        fits = fits && has_room(radiance_[b * 3 + c], results.sum_radiance[c * n + size_t(r)]);
+        is_finite = is_finite && std::isfinite(results.sum_radiance[c * n + size_t(r)]);
     for (size_t c = 0; c < 3; ++c) {
-        if (fits) radiance_[b * 3 + c] += results.sum_radiance[c * n + size_t(r)];
-        albedo_[p * 3 + c] += results.sum_albedo[c * n + size_t(r)];
-        normal_[p * 3 + c] += results.sum_normal[c * n + size_t(r)];
+        if (is_finite) data_.radiance[b * 3 + c] += double(results.sum_radiance[c * n + size_t(r)]);
+        data_.albedo[p * 3 + c] += double(results.sum_albedo[c * n + size_t(r)]);
+        data_.normal[p * 3 + c] += double(results.sum_normal[c * n + size_t(r)]);
     }
-    alpha_[p] += results.sum_alpha[size_t(r)];
-    distance_[p] += results.sum_distance[size_t(r)];
-    if (batch_samples_[p * size_t(batches_)] == 0) {
-        object_[p] = results.object_id[size_t(r)];
-        material_[p] = results.material_id[size_t(r)];
+    data_.alpha[p] += results.sum_alpha[size_t(r)];
+    data_.distance[p] += double(results.sum_distance[size_t(r)]);
+    if (item.first_sample == 0) {
+        data_.object[p] = results.object_id[size_t(r)];
+        data_.material[p] = results.material_id[size_t(r)];
     }
-    batch_samples_[b] += dispatch.samples;
-    return fits;
+    data_.batch_samples[b] += dispatch.samples;
+    return is_finite;
 }
 
-std::vector<float> Film::means(const std::vector<float>& sums, int channels) const
+int Film::samples_of(size_t pixel) const
+{
+    int samples = 0;
+    for (int b = 0; b < data_.batches; ++b)
+        samples += data_.batch_samples[pixel * size_t(data_.batches) + size_t(b)];
+    return samples;
+}
+
+std::array<float, 3> Film::mean_of(size_t pixel) const
+{
+    std::array<float, 3> mean{};
+    const int samples = samples_of(pixel);
+    for (size_t c = 0; c < 3 && samples > 0; ++c) {
+        double sum = 0;
+        for (size_t b = 0; b < size_t(data_.batches); ++b)
+            sum += data_.radiance[(pixel * size_t(data_.batches) + b) * 3 + c];
+        mean[c] = float(sum / samples);
+    }
+    return mean;
+}
+
+std::array<float, 3> Film::radiance(int x, int y) const
+{
+    return contains(data_.window, x, y) ? mean_of(pixel_at(x, y)) : std::array<float, 3>{};
+}
+
+std::array<float, 3> Film::standard_error(int x, int y) const
+{
+    return contains(data_.window, x, y) ? standard_error_of(pixel_at(x, y))
+                                        : std::array<float, 3>{};
+}
+
+std::array<float, 3> Film::albedo(int x, int y) const
+{
+    std::array<float, 3> mean{};
+    if (!contains(data_.window, x, y)) return mean;
+    const size_t p = pixel_at(x, y);
+    const int samples = samples_of(p);
+    for (size_t c = 0; c < 3 && samples > 0; ++c)
+        mean[c] = float(data_.albedo[p * 3 + c] / samples);
+    return mean;
+}
+
+void Film::forget_samples()
+{
+    FilmData fresh = Film(width_, height_, data_.window, data_.batches).data_;
+    fresh.object = std::move(data_.object);
+    fresh.material = std::move(data_.material);
+    fresh.faults = data_.faults;
+    data_ = std::move(fresh);
+}
+
+// Batch means weigh as many as their samples; the spread of n of them, each of N / n samples, is n
+// times the variance of the mean of all N.
+std::array<float, 3> Film::standard_error_of(size_t pixel) const
+{
+    std::array<float, 3> error{};
+    const std::array<float, 3> mean = mean_of(pixel);
+    for (size_t c = 0; c < 3; ++c) {
+        double square = 0;
+        int used = 0, samples = 0;
+        for (size_t b = 0; b < size_t(data_.batches); ++b) {
+            const size_t k = pixel * size_t(data_.batches) + b;
+            const int n = data_.batch_samples[k];
+            if (n == 0) continue;
+            const double deviation = data_.radiance[k * 3 + c] / n - double(mean[c]);
+            square += n * deviation * deviation;
+            samples += n;
+            ++used;
+        }
+        if (used > 1) error[c] = float(std::sqrt(square / (used - 1) / samples));
+    }
+    return error;
+}
+
+// A layer of means over all samples of the sums.
+std::vector<float> Film::means(const std::vector<double>& sums, size_t channels) const
 {
     std::vector<float> out(sums.size());
-    for (size_t p = 0; p < alpha_.size(); ++p) {
-        int samples = 0;
-        for (int b = 0; b < batches_; ++b)
-            samples += batch_samples_[p * size_t(batches_) + size_t(b)];
-        for (size_t c = 0; c < size_t(channels); ++c)
-            out[p * size_t(channels) + c] =
-                samples > 0 ? sums[p * size_t(channels) + c] / float(samples) : 0.0f;
-    }
-    return out;
-}
-
-std::vector<float> Film::standard_error() const
-{
-    std::vector<float> out(albedo_.size());
-    for (size_t p = 0; p < alpha_.size(); ++p) {
-        for (size_t c = 0; c < 3; ++c) {
-            double sum = 0, square = 0;
-            int used = 0;
-            for (size_t b = 0; b < size_t(batches_); ++b) {
-                const int samples = batch_samples_[p * size_t(batches_) + b];
-                if (samples == 0) continue;
-                const double mean = double(radiance_[(p * size_t(batches_) + b) * 3 + c]) / samples;
-                sum += mean;
-                square += mean * mean;
-                ++used;
-            }
-            if (used < 2) continue;
-            const double variance = std::max(0.0, square - sum * sum / used) / (used - 1);
-            out[p * 3 + c] = float(std::sqrt(variance / used));
-        }
+    for (size_t p = 0; p < data_.window.pixels(); ++p) {
+        const int samples = samples_of(p);
+        for (size_t c = 0; c < channels && samples > 0; ++c)
+            out[p * channels + c] = float(sums[p * channels + c] / samples);
     }
     return out;
 }
 
 image::Picture Film::picture() const
 {
+    const size_t pixels = data_.window.pixels();
+    std::vector<float> rgba(pixels * 4), errors(has_standard_error() ? pixels * 3 : 0);
+    std::vector<uint32_t> counts(pixels), objects(pixels), materials(pixels);
+    for (size_t p = 0; p < pixels; ++p) {
+        const std::array<float, 3> mean = mean_of(p);
+        std::copy(mean.begin(), mean.end(), &rgba[p * 4]);
+        counts[p] = uint32_t(samples_of(p));
+        if (counts[p] > 0) rgba[p * 4 + 3] = data_.alpha[p] / float(counts[p]);
+        objects[p] = uint32_t(data_.object[p] + 1);  // 0: nothing was met
+        materials[p] = uint32_t(data_.material[p] + 1);
+        if (has_standard_error()) {
+            const std::array<float, 3> error = standard_error_of(p);
+            std::copy(error.begin(), error.end(), &errors[p * 3]);
+        }
+    }
+    const auto whole = [&]<class Value>(std::vector<Value> layer) {
+        return padded(std::move(layer), data_.window, width_, height_);
+    };
     image::Picture picture;
     picture.width = width_;
     picture.height = height_;
-    const size_t pixels = alpha_.size();
-    std::vector<float> sums(pixels * 3);
-    std::vector<uint32_t> counts(pixels), objects(pixels), materials(pixels);
-    for (size_t p = 0; p < pixels; ++p) {
-        for (size_t b = 0; b < size_t(batches_); ++b) {
-            counts[p] += uint32_t(batch_samples_[p * size_t(batches_) + b]);
-            for (size_t c = 0; c < 3; ++c)
-                sums[p * 3 + c] += radiance_[(p * size_t(batches_) + b) * 3 + c];
-        }
-        objects[p] = uint32_t(object_[p] + 1);  // 0: nothing was met
-        materials[p] = uint32_t(material_[p] + 1);
-    }
-    const std::vector<float> radiance = means(sums, 3);
-    const std::vector<float> alpha = means(alpha_, 1);
-    std::vector<float> rgba(pixels * 4);
-    for (size_t p = 0; p < pixels; ++p) {
-        for (size_t c = 0; c < 3; ++c) rgba[p * 4 + c] = radiance[p * 3 + c];
-        rgba[p * 4 + 3] = alpha[p];
-    }
-    picture.layers.push_back(image::beauty_layer(std::move(rgba)));
-    picture.layers.push_back(image::albedo_layer(means(albedo_, 3)));
-    picture.layers.push_back(image::normal_layer(means(normal_, 3)));
-    picture.layers.push_back(image::depth_layer(means(distance_, 1)));
-    picture.layers.push_back(image::id_layer("object_id", std::move(objects)));
-    picture.layers.push_back(image::id_layer("material_id", std::move(materials)));
-    picture.layers.push_back(image::id_layer("sample_count", std::move(counts)));
+    picture.layers.push_back(image::beauty_layer(whole(std::move(rgba))));
+    picture.layers.push_back(image::albedo_layer(whole(means(data_.albedo, 3))));
+    picture.layers.push_back(image::normal_layer(whole(means(data_.normal, 3))));
+    picture.layers.push_back(image::depth_layer(whole(means(data_.distance, 1))));
+    picture.layers.push_back(image::id_layer("object_id", whole(std::move(objects))));
+    picture.layers.push_back(image::id_layer("material_id", whole(std::move(materials))));
+    picture.layers.push_back(image::id_layer("sample_count", whole(std::move(counts))));
     if (has_standard_error())
-        picture.layers.push_back(image::standard_error_layer(standard_error()));
+        picture.layers.push_back(image::standard_error_layer(whole(std::move(errors))));
     return picture;
 }
 

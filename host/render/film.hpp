@@ -4,6 +4,8 @@
 #include "backends/backend.hpp"
 #include "host/image/image.hpp"
 
+#include <array>
+
 namespace diptych {
 
 // Batches from whose means the standard error is taken: those of common/random.h.
@@ -19,38 +21,76 @@ struct Faults {
     int first_sample = -1;
 };
 
+// A rectangle of the picture.
+struct Window {
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
+
+    size_t pixels() const { return size_t(width) * size_t(height); }
+};
+
+// Everything that a film remembers: with it a render can be continued. `pixel` counts through the
+// window, row by row. Sums are double, so that films of different samples add up to the same bits
+// in any order (short of quanta that differ in brightness by a factor of millions).
+struct FilmData {
+    Window window;
+    int batches = 1;
+    std::vector<double> radiance;    // [pixel][batch][3]
+    std::vector<int> batch_samples;  // [pixel][batch]
+    std::vector<float> alpha;        // summed over all samples, as the next three
+    std::vector<double> albedo, normal, distance;
+    std::vector<int> object, material;  // met by the very first sample; -1: nothing, not rendered
+    Faults faults;
+};
+
+// How many batches the samples 0 to end - 1 fall into.
+int batches_of(int end);
+
 class Film {
 public:
-    // samples: a pixel's in the whole render; decides whether batches are kept apart.
-    Film(int width, int height, int samples);
+    // Keeps only what lies in the window. batches: batches_of the last sample's number plus one.
+    Film(int width, int height, const Window& window, int batches);
 
-    static size_t bytes(int width, int height, int samples);
+    static size_t bytes(const Window& window, int batches);
 
     void add(const Dispatch& dispatch, const Results& results);
 
-    int width() const { return width_; }
+    int width() const { return width_; }  // of the picture
     int height() const { return height_; }
-    const Faults& faults() const { return faults_; }
+    const Faults& faults() const { return data_.faults; }
+    const FilmData& data() const { return data_; }
+    FilmData& data() { return data_; }
+
+    // Mean radiance of a pixel of the picture; black outside the window and without samples.
+    std::array<float, 3> radiance(int x, int y) const;
+
+    // Standard error of that mean, from the spread of the batches; 0 with fewer than two.
+    std::array<float, 3> standard_error(int x, int y) const;
+    std::array<float, 3> albedo(int x, int y) const;  // mean
+
+    // Starts the sums anew; what the first samples met is kept.
+    void forget_samples();
 
     // Beauty (alpha = coverage), albedo, normal, depth, object and material id, sample count and,
-    // from standard_error_samples on, standard error. Pixels without samples are black.
+    // with batches, standard error. Pixels without samples are black.
     image::Picture picture() const;
-    bool has_standard_error() const { return batches_ == batch_count; }
+    bool has_standard_error() const { return data_.batches == batch_count; }
 
 private:
-    // False when the radiance would make the sum overflow; it is left out then.
-    bool add_pixel(int pixel, int batch, const Dispatch& dispatch, const Results& results, int r);
-    std::vector<float> standard_error() const;
-    std::vector<float> means(const std::vector<float>& sums, int channels) const;
+    // False when the radiance summed up on the device is not finite; it is left out then.
+    bool add_pixel(size_t pixel, const WorkItem& item, const Dispatch& dispatch,
+                   const Results& results, int r);
+    size_t pixel_at(int x, int y) const;
+    int samples_of(size_t pixel) const;
+    std::array<float, 3> mean_of(size_t pixel) const;
+    std::array<float, 3> standard_error_of(size_t pixel) const;
+    std::vector<float> means(const std::vector<double>& sums, size_t channels) const;
 
     int width_;
     int height_;
-    int batches_;
-    std::vector<float> radiance_;     // [pixel][batch][3]: each batch sums its quanta in order
-    std::vector<int> batch_samples_;  // [pixel][batch]
-    std::vector<float> alpha_, albedo_, normal_, distance_;  // summed over all samples
-    std::vector<int> object_, material_;
-    Faults faults_;
+    FilmData data_;
 };
 
 }  // namespace diptych

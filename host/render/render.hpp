@@ -1,18 +1,14 @@
-// Walks the film in dispatches and gathers what comes back.
+// Executes the scheduler's lists of work in dispatches and gathers what comes back.
 #pragma once
 
 #include "host/render/film.hpp"
+#include "host/render/scheduler.hpp"
 
 #include <atomic>
 #include <functional>
 #include <optional>
 
 namespace diptych {
-
-struct Pixel {
-    int x;
-    int y;
-};
 
 struct Progress {
     double fraction;
@@ -21,34 +17,43 @@ struct Progress {
     unsigned long long rays;
 };
 
+// Where a render stands; what it needs to go on.
+struct RenderState {
+    Film film;
+    Schedule schedule;
+};
+
 struct RenderOptions {
-    int samples = 64;
+    int samples = 64;            // the render ends before this sample of each pixel
+    int first_sample = 0;        // and begins with this one, a multiple of QUANTUM
     std::optional<Pixel> pixel;  // only this one
     std::function<void(const Progress&)> progress;
-    const std::atomic<bool>* stop = nullptr;  // looked at between dispatches
+    std::function<void(const RenderState&)> observe;  // after every dispatch, on this thread
+    int most_items = 0;                               // in a dispatch; 0: what the backend plans
+    const std::atomic<bool>* stop = nullptr;          // looked at between dispatches
 };
 
 struct RenderResult {
     Film film;
+    Schedule schedule;
     Plan plan;
     Statistics statistics;
     double seconds = 0;
+    double dispatch_fill = 1;  // work items in all dispatches, of those there was room for
     bool is_complete = true;
 };
 
-// Samples in quanta of 1, 2, 4, 8 or 16 a pixel: work item by work item, film blocks in Morton
-// order, one pass over the film a quantum. The picture depends neither on the dispatch size nor on
-// threads. scene: uploaded to the backend before; settings[0] holds picture size and seed.
-RenderResult render(Backend& backend, const SceneData& scene, const RenderOptions& options);
+// What the film will take on the host.
+size_t film_bytes(const Settings& settings, const RenderOptions& options);
 
-// The quanta of a render, in order: first sample and number of samples (a power of two).
-struct Quantum {
-    int first_sample;
-    int samples;
-};
-std::vector<Quantum> quanta_of(int samples);
+// The state in which a render with these options begins: nothing rendered.
+RenderState fresh_state(const Settings& settings, const RenderOptions& options);
 
-// Lowest pixels of the film's blocks in Morton order.
-std::vector<Pixel> blocks_of(int width, int height);
+// Samples in quanta of 1, 2, 4, 8 or 16 a pixel, block by block. The picture depends neither on the
+// dispatch size nor on threads nor on where a render was interrupted and resumed. scene: uploaded
+// to the backend before; settings[0] holds picture size and seed. resume: of a render with the same
+// options; it may have had a shorter plan.
+RenderResult render(Backend& backend, const SceneData& scene, const RenderOptions& options,
+                    std::optional<RenderState> resume = std::nullopt);
 
 }  // namespace diptych

@@ -1,0 +1,138 @@
+#include "host/render/block_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace diptych {
+namespace {
+
+constexpr int part_shift = 2;  // parts of a block: 4 x 4 pixels
+
+float luminance(const std::array<float, 3>& color)
+{
+    return 0.2126f * color[0] + 0.7152f * color[1] + 0.0722f * color[2];
+}
+
+template<class Visit>
+void for_pixels_around(const Film& film, int x, int y, const Visit& visit)
+{
+    const Window& window = film.data().window;
+    const int right = std::min(x + 1, window.x + window.width - 1);
+    const int low = std::min(y + 1, window.y + window.height - 1);
+    for (int v = std::max(y - 1, window.y); v <= low; ++v)
+        for (int u = std::max(x - 1, window.x); u <= right; ++u) visit(u, v);
+}
+
+// Standard deviation of the albedo over its mean, 3 x 3 pixels.
+float texture_contrast(const Film& film, int x, int y)
+{
+    float sum = 0, square = 0;
+    int count = 0;
+    for_pixels_around(film, x, y, [&](int u, int v) {
+        const float value = luminance(film.albedo(u, v));
+        sum += value;
+        square += value * value;
+        ++count;
+    });
+    const float mean = sum / float(count);
+    const float variance = std::max(square / float(count) - mean * mean, 0.0f);
+    return mean > 0 ? std::sqrt(variance) / mean : 0;
+}
+
+int quantised(double error)
+{
+    return int(std::min(std::ceil(error * error_unit), double(1 << 30)));
+}
+
+// The probability that a normal error of this standard deviation is smaller than `bound`.
+double share_below(double bound, double deviation)
+{
+    return deviation > 0 ? std::erf(bound / (deviation * std::sqrt(2.0))) : 1;
+}
+
+}  // namespace
+
+float pixel_error(const Film& film, int x, int y, const Viewer& viewer)
+{
+    const std::array<float, 3> error = film.standard_error(x, y);
+    if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
+    return visible_error(film.radiance(x, y), error, texture_contrast(film, x, y), viewer);
+}
+
+BlockError block_error(const Film& film, Pixel corner, int shift, const Viewer& viewer)
+{
+    const int parts = std::max(1, 1 << (shift - part_shift));
+    const int part_side = (1 << shift) / parts;
+    const int right = std::min(corner.x + (1 << shift), film.width());
+    const int low = std::min(corner.y + (1 << shift), film.height());
+    double all = 0, worst = 0;
+    int pixels = 0;
+    for (int top = corner.y; top < low; top += part_side)
+        for (int left = corner.x; left < right; left += part_side) {
+            double sum = 0;
+            int count = 0;
+            for (int y = top; y < std::min(top + part_side, low); ++y)
+                for (int x = left; x < std::min(left + part_side, right); ++x, ++count) {
+                    const double error = double(confidence * pixel_error(film, x, y, viewer));
+                    sum += error * error;
+                }
+            all += sum;
+            pixels += count;
+            worst = std::max(worst, sum / count);
+        }
+    return {quantised(std::sqrt(all / pixels)), quantised(std::sqrt(worst))};
+}
+
+std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, const Viewer& viewer)
+{
+    std::vector<BlockError> errors;
+    errors.reserve(grid.corners.size());
+    for (const Pixel& corner : grid.corners)
+        errors.push_back(block_error(film, corner, grid.shift, viewer));
+    return errors;
+}
+
+ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const Viewer& viewer,
+                             double target)
+{
+    ErrorSummary summary;
+    double square = 0, within = 0;
+    for (const float bound : predicted_error(film, viewer)) {
+        const double deviation = double(bound / confidence);
+        square += deviation * deviation;
+        within += share_below(target, deviation);
+    }
+    const double pixels = double(film.width()) * film.height();
+    summary.rms = std::sqrt(square / pixels);
+    summary.share_within = within / pixels;
+    std::vector<BlockError> blocks = block_errors(film, grid, viewer);
+    const auto p95 = blocks.begin() + std::ptrdiff_t((blocks.size() - 1) * 95 / 100);
+    std::nth_element(blocks.begin(), p95, blocks.end(),
+                     [](const BlockError& a, const BlockError& b) { return a.rms < b.rms; });
+    summary.block_p95 = double(p95->rms) / error_unit;
+    return summary;
+}
+
+std::vector<float> predicted_error(const Film& film, const Viewer& viewer)
+{
+    const int width = film.width(), height = film.height();
+    std::vector<float> squares(size_t(width) * size_t(height)), out(squares.size());
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const float error = pixel_error(film, x, y, viewer);
+            squares[size_t(y) * size_t(width) + size_t(x)] = error * error;
+        }
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            float sum = 0;
+            int count = 0;
+            for_pixels_around(film, x, y, [&](int u, int v) {
+                sum += squares[size_t(v) * size_t(width) + size_t(u)];
+                ++count;
+            });
+            out[size_t(y) * size_t(width) + size_t(x)] = confidence * std::sqrt(sum / float(count));
+        }
+    return out;
+}
+
+}  // namespace diptych

@@ -1,0 +1,34 @@
+// The predicted error of a film, from the spread of its batches.
+#pragma once
+
+#include "host/render/film.hpp"
+#include "host/render/scheduler.hpp"
+#include "host/render/visible_error.hpp"
+
+namespace diptych {
+
+// Standard errors that an error stays below with 95 % probability. A batch mean is nearly normal;
+// its spread is taken over many pixels, so that no Student factor is due.
+inline constexpr float confidence = 1.96f;
+
+// One standard error of a pixel of the film, in JND; 0 with fewer than two batches.
+float pixel_error(const Film& film, int x, int y, const Viewer& viewer);
+
+// RMS of `confidence` standard errors over the block's pixels that the film holds.
+BlockError block_error(const Film& film, Pixel corner, int shift, const Viewer& viewer);
+std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, const Viewer& viewer);
+
+// What the film's error is expected to be.
+struct ErrorSummary {
+    double rms = 0;           // JND, one standard error
+    double block_p95 = 0;     // JND; 95 % of the blocks predict less, at 95 % confidence
+    double share_within = 1;  // of the pixels, expected to be nearer to the truth than the target
+};
+ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const Viewer& viewer,
+                             double target);
+
+// The layer predicted_error: of each pixel of the picture, the error in JND that it stays below
+// with 95 % probability. Its own batches and those of its neighbours tell, 3 x 3 pixels.
+std::vector<float> predicted_error(const Film& film, const Viewer& viewer);
+
+}  // namespace diptych
