@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace diptych {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double first_level = 4;       // JND: where a render with only a time limit begins
+constexpr int small_picture = 500'000;  // pixels
+
 double seconds_since(Clock::time_point start)
 {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-BlockGrid grid_of(const Settings& settings, const RenderOptions& options)
-{
-    return options.pixel ? grid_of_pixel(settings.width, settings.height, *options.pixel)
-                         : grid_of_blocks(settings.width, settings.height);
 }
 
 Window window_of(const Settings& settings, const RenderOptions& options)
@@ -25,38 +23,91 @@ Window window_of(const Settings& settings, const RenderOptions& options)
                          : Window{0, 0, settings.width, settings.height};
 }
 
+int film_batches(const RenderOptions& options)
+{
+    return is_adaptive(options) ? batch_count : batches_of(options.samples);
+}
+
+// 95 % of the blocks have less, in JND.
+double block_p95(std::vector<BlockError> errors)
+{
+    const auto p95 = errors.begin() + std::ptrdiff_t((errors.size() - 1) * 95 / 100);
+    std::nth_element(errors.begin(), p95, errors.end(),
+                     [](const BlockError& a, const BlockError& b) { return a.rms < b.rms; });
+    return double(p95->rms) / error_unit;
+}
+
 // One render: its plan, its state, and what a dispatch is made of.
 class Render {
 public:
     Render(Backend& backend, const SceneData& scene, const RenderOptions& options,
            RenderState state)
         : backend_(backend), options_(options), grid_(grid_of(scene.settings[0], options)),
-          quanta_(quanta_of(options.first_sample, options.samples)), state_(std::move(state)),
-          plan_(backend.plan(scene)), start_(Clock::now())
+          quanta_(plan_of(options)), state_(std::move(state)), plan_(backend.plan(scene)),
+          start_(Clock::now())
     {
-        for (const BlockState& block : state_.schedule.blocks) done_ += block.quanta;
+        for (const BlockState& block : state_.schedule.blocks) {
+            done_ += block.quanta;
+            has_picture_ = has_picture_ && block.quanta > 0;
+        }
+        if (is_adaptive(options_)) measure();
     }
 
     RenderResult run()
     {
         bool is_complete = false;
-        while (finish_round() && !is_complete)
-            is_complete = !begin_uniform_round(state_.schedule, int(quanta_.size()));
-        const double room = double(dispatches_) * double(items_at_once());
-        return {std::move(state_.film),
-                std::move(state_.schedule),
-                plan_,
-                backend_.statistics(),
-                seconds_since(start_),
-                dispatches_ > 0 ? double(items_) / room : 1,
-                is_complete};
+        while (finish_round() && !is_complete) is_complete = !begin_round();
+        RenderResult result{std::move(state_.film), std::move(state_.schedule), plan_,
+                            backend_.statistics(), seconds_since(start_)};
+        const double room = double(dispatches_) * double(items_planned());
+        if (dispatches_ > 0) result.dispatch_fill = double(items_) / room;
+        result.scheduling_seconds = scheduling_seconds_;
+        result.blocks = int(grid_.corners.size());
+        describe_ending(result, is_complete);
+        return result;
     }
 
 private:
-    bool should_stop() const { return options_.stop && options_.stop->load(); }
+    bool is_interrupted() const { return options_.stop && options_.stop->load(); }
+
+    bool is_time_over() const
+    {
+        return options_.time_limit > 0 && has_picture_ &&
+               seconds_since(start_) >= options_.time_limit;
+    }
+
+    void describe_ending(RenderResult& result, bool is_complete) const
+    {
+        const bool is_at_end = std::all_of(
+            result.schedule.blocks.begin(), result.schedule.blocks.end(),
+            [&](const BlockState& block) { return block.quanta >= int(quanta_.size()); });
+        result.is_complete = is_complete || is_at_end || !is_interrupted();
+        if (!is_adaptive(options_)) {
+            result.ending = result.is_complete ? Ending::SamplesDone : Ending::Interrupted;
+            return;
+        }
+        result.target = double(target()) / error_unit;
+        const std::vector<BlockError> errors = block_errors(result.film, grid_, options_.viewer);
+        for (const BlockError& error : errors)
+            result.unfinished_blocks += std::max(error.rms, error.worst_part / 3) > target();
+        const bool is_reached = is_complete && result.unfinished_blocks == 0;
+        result.ending = is_reached       ? Ending::TargetReached
+                        : is_complete    ? Ending::SamplesDone
+                        : is_time_over() ? Ending::TimeOver
+                                         : Ending::Interrupted;
+    }
+
+    // In units of BlockError, at least one.
+    int target() const
+    {
+        const double jnd = options_.error > 0
+                               ? options_.error
+                               : first_level * std::exp2(-0.5 * state_.schedule.level);
+        return int(std::clamp(std::floor(jnd * error_unit), 1.0, 1e9));
+    }
 
     // A plan's items are blocks of the largest size.
-    size_t items_at_once() const
+    size_t items_planned() const
     {
         if (options_.pixel) return 1;
         const size_t planned = size_t(std::max(1, plan_.items))
@@ -64,21 +115,76 @@ private:
         return options_.most_items > 0 ? std::min(planned, size_t(options_.most_items)) : planned;
     }
 
+    // Fewer where the time limit would be passed by much.
+    size_t items_at_once(int samples) const
+    {
+        const size_t planned = items_planned();
+        if (options_.time_limit <= 0 || seconds_per_sample_ <= 0) return planned;
+        const double left =
+            std::max(options_.time_limit - seconds_since(start_), 0.05 * options_.time_limit);
+        const double items = left / (seconds_per_sample_ * samples);
+        return size_t(std::clamp(items, 4.0, double(planned)));
+    }
+
+    void measure() { errors_ = block_errors(state_.film, grid_, options_.viewer); }
+
+    bool begin_round()
+    {
+        if (!is_adaptive(options_))
+            return begin_uniform_round(state_.schedule, int(quanta_.size()));
+        const Clock::time_point start = Clock::now();
+        measure();
+        const bool has_begun = options_.error > 0 ? begin_adaptive() : begin_at_some_level();
+        scheduling_seconds_ += seconds_since(start);
+        return has_begun;
+    }
+
+    bool begin_adaptive()
+    {
+        const Targets targets{target(), 4 * QUANTUM, options_.is_unbiased};
+        const int pilot = state_.schedule.pilot;
+        const bool has_begun =
+            begin_adaptive_round(state_.schedule, grid_, quanta_, errors_, targets);
+        if (state_.schedule.pilot != pilot) state_.film.forget_samples();
+        return has_begun;
+    }
+
+    // A time limit alone: when all blocks are as good as each other, the target is lowered.
+    bool begin_at_some_level()
+    {
+        const auto has_plan_left = [&](const BlockState& block) {
+            return block.quanta < int(quanta_.size());
+        };
+        while (!begin_adaptive()) {
+            std::vector<BlockState>& blocks = state_.schedule.blocks;
+            if (target() == 1 || std::none_of(blocks.begin(), blocks.end(), has_plan_left))
+                return false;
+            ++state_.schedule.level;
+            for (BlockState& block : blocks) block.is_done = false;
+        }
+        return true;
+    }
+
     // False when asked to stop before its end.
     bool finish_round()
     {
-        const std::vector<Work> work = work_by_pass(state_.schedule);
+        const bool is_first = !has_picture_ || !is_adaptive(options_);
+        const std::vector<Work> work = is_first ? work_by_pass(state_.schedule)
+                                                : work_by_block(state_.schedule, quanta_, errors_);
         for (size_t first = 0; first < work.size();) {
-            if (should_stop()) return false;
-            const size_t count = dispatch_length(work, first, items_at_once(), quanta_);
+            if (is_interrupted() || is_time_over()) return false;
+            const int samples = quanta_[size_t(work[first].quantum)].samples;
+            const size_t count = dispatch_length(work, first, items_at_once(samples), quanta_);
             run_dispatch({work.data() + first, count});
             first += count;
         }
+        if (!work.empty()) has_picture_ = true;
         return true;
     }
 
     void run_dispatch(std::span<const Work> work)
     {
+        const Clock::time_point start = Clock::now();
         work_items_.clear();
         for (const Work& part : work) {
             const Pixel& corner = grid_.corners[size_t(part.block)];
@@ -88,9 +194,12 @@ private:
         const Quantum& last = quanta_[size_t(work.back().quantum)];
         const Dispatch dispatch{work_items_, last.samples, grid_.pixel_shift()};
         backend_.render(dispatch, results_);
+        const Clock::time_point merge = Clock::now();
         state_.film.add(dispatch, results_);
         for (const Work& part : work)
             state_.schedule.blocks[size_t(part.block)].quanta = part.quantum + 1;
+        scheduling_seconds_ += seconds_since(merge);
+        seconds_per_sample_ = seconds_since(start) / (double(work.size()) * last.samples);
         done_ += int(work.size());
         items_ += work.size();
         ++dispatches_;
@@ -102,9 +211,41 @@ private:
         if (options_.observe) options_.observe(state_);
         if (!options_.progress) return;
         const Statistics statistics = backend_.statistics();
-        const double all = double(quanta_.size()) * double(grid_.corners.size());
-        options_.progress({double(done_) / all, seconds_since(start_), samples,
-                           statistics.rays + statistics.shadow_rays});
+        Progress progress{uniform_fraction(), seconds_since(start_), samples,
+                          statistics.rays + statistics.shadow_rays};
+        if (is_adaptive(options_)) {
+            progress.error = errors_.empty() || !has_picture_ ? 0 : block_p95(errors_);
+            if (options_.error > 0) progress.fraction = adaptive_fraction();
+            if (options_.time_limit > 0)
+                progress.fraction = std::max(options_.error > 0 ? progress.fraction : 0,
+                                             std::min(1.0, progress.seconds / options_.time_limit));
+        }
+        const double fraction = std::clamp(progress.fraction, 1e-6, 1.0);
+        progress.seconds_left = progress.seconds * (1 - fraction) / fraction;
+        options_.progress(progress);
+    }
+
+    double uniform_fraction() const
+    {
+        return double(done_) / (double(quanta_.size()) * double(grid_.corners.size()));
+    }
+
+    // Of the samples that the errors of the last round's end ask for: what is there already.
+    double adaptive_fraction() const
+    {
+        double needed = 0, there = 0;
+        for (size_t b = 0; b < grid_.corners.size(); ++b) {
+            const BlockState& block = state_.schedule.blocks[b];
+            double want = std::max(4, block.target);
+            if (has_picture_ && !block.is_done && block.target > block.quanta / 2) {
+                const double ratio =
+                    double(std::max(errors_[b].rms, errors_[b].worst_part / 3)) / target();
+                want = std::max(want, 0.5 * block.target * ratio * ratio);
+            }
+            needed += want;
+            there += block.quanta;
+        }
+        return needed > 0 ? there / needed : 1;
     }
 
     Backend& backend_;
@@ -114,8 +255,12 @@ private:
     RenderState state_;
     Plan plan_;
     Clock::time_point start_;
+    std::vector<BlockError> errors_;  // at the end of the last round; adaptive
     std::vector<WorkItem> work_items_;
     Results results_;
+    bool has_picture_ = true;        // every block has a quantum
+    double seconds_per_sample_ = 0;  // of a block, in the last dispatch
+    double scheduling_seconds_ = 0;
     long long done_ = 0;  // quanta of blocks, also before a resumption
     size_t items_ = 0;
     size_t dispatches_ = 0;
@@ -123,17 +268,40 @@ private:
 
 }  // namespace
 
+bool is_adaptive(const RenderOptions& options)
+{
+    return options.error > 0 || options.time_limit > 0;
+}
+
+std::vector<Quantum> plan_of(const RenderOptions& options)
+{
+    if (options.time_limit <= 0 || options.first_sample > 0 || options.samples < QUANTUM)
+        return quanta_of(options.first_sample, options.samples);
+    std::vector<Quantum> plan = {{0, 1}, {1, 1}, {2, 2}, {4, 4}, {8, 8}};
+    const std::vector<Quantum> rest = quanta_of(QUANTUM, options.samples);
+    plan.insert(plan.end(), rest.begin(), rest.end());
+    return plan;
+}
+
+BlockGrid grid_of(const Settings& settings, const RenderOptions& options)
+{
+    if (options.pixel) return grid_of_pixel(settings.width, settings.height, *options.pixel);
+    const bool is_small = settings.width * settings.height < small_picture;
+    return grid_of_blocks(settings.width, settings.height,
+                          is_adaptive(options) && is_small ? BLOCK_SHIFT - 1 : BLOCK_SHIFT);
+}
+
 size_t film_bytes(const Settings& settings, const RenderOptions& options)
 {
-    return Film::bytes(window_of(settings, options), batches_of(options.samples));
+    return Film::bytes(window_of(settings, options), film_batches(options));
 }
 
 RenderState fresh_state(const Settings& settings, const RenderOptions& options)
 {
     const size_t blocks = grid_of(settings, options).corners.size();
-    return {Film(settings.width, settings.height, window_of(settings, options),
-                 batches_of(options.samples)),
-            {0, 0, 0, std::vector<BlockState>(blocks)}};
+    return {
+        Film(settings.width, settings.height, window_of(settings, options), film_batches(options)),
+        {0, 0, 0, std::vector<BlockState>(blocks)}};
 }
 
 RenderResult render(Backend& backend, const SceneData& scene, const RenderOptions& options,

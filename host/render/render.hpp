@@ -1,6 +1,7 @@
 // Executes the scheduler's lists of work in dispatches and gathers what comes back.
 #pragma once
 
+#include "host/render/block_error.hpp"
 #include "host/render/film.hpp"
 #include "host/render/scheduler.hpp"
 
@@ -15,6 +16,8 @@ struct Progress {
     double seconds;
     int samples;  // a pixel's, of the pass under way
     unsigned long long rays;
+    double error = 0;  // adaptive: 95 % of the blocks predicted less at the last round's end, JND
+    double seconds_left = 0;  // from the trend of what is measured: samples, or error, or the limit
 };
 
 // Where a render stands; what it needs to go on.
@@ -23,10 +26,21 @@ struct RenderState {
     Schedule schedule;
 };
 
+// Beyond this many samples of a pixel a render with an error target gives up.
+inline constexpr int most_adaptive_samples = 1 << 16;
+
+enum class Ending { TargetReached, SamplesDone, TimeOver, Interrupted };
+
 struct RenderOptions {
     int samples = 64;            // the render ends before this sample of each pixel
     int first_sample = 0;        // and begins with this one, a multiple of QUANTUM
     std::optional<Pixel> pixel;  // only this one
+    // Adaptive: blocks end when their predicted error is below `error` JND. A time limit alone
+    // lowers a target again and again. Whichever comes first ends the render, `samples` as well.
+    double error = 0;       // 0: none
+    double time_limit = 0;  // seconds; 0: none. Each pixel gets a sample whatever it says
+    bool is_unbiased = false;
+    Viewer viewer;
     std::function<void(const Progress&)> progress;
     std::function<void(const RenderState&)> observe;  // after every dispatch, on this thread
     int most_items = 0;                               // in a dispatch; 0: what the backend plans
@@ -40,8 +54,21 @@ struct RenderResult {
     Statistics statistics;
     double seconds = 0;
     double dispatch_fill = 1;  // work items in all dispatches, of those there was room for
-    bool is_complete = true;
+    bool is_complete = true;   // false: interrupted
+    Ending ending = Ending::SamplesDone;
+    double target = 0;          // JND that all blocks were to reach when it ended; 0: uniform
+    int unfinished_blocks = 0;  // above the target
+    int blocks = 0;
+    double scheduling_seconds = 0;  // merging, errors and decisions
 };
+
+bool is_adaptive(const RenderOptions& options);
+
+// The sample plan. One with a time limit begins with small quanta: a first picture is there soon.
+std::vector<Quantum> plan_of(const RenderOptions& options);
+
+// How the film is divided: small pictures of an adaptive render into blocks of half the side.
+BlockGrid grid_of(const Settings& settings, const RenderOptions& options);
 
 // What the film will take on the host.
 size_t film_bytes(const Settings& settings, const RenderOptions& options);
