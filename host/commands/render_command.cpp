@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 
 namespace diptych {
@@ -43,6 +45,54 @@ void print_pixel(const Film& film, const Pixel& pixel)
                value[2]);
 }
 
+// What is written: the film's layers, and where its error is known, how visible it is.
+image::Picture picture_of(const Film& film, const RenderOptions& options)
+{
+    image::Picture picture = film.picture();
+    if (film.has_standard_error() && !options.pixel)
+        picture.layers.push_back(
+            image::predicted_error_layer(predicted_error(film, options.viewer)));
+    return picture;
+}
+
+// Rewrites the pictures of a render in progress every so many seconds.
+class Refresher {
+public:
+    Refresher(const RenderCommand& command, const RenderOptions& options,
+              const image::WriteOptions& write)
+        : command_(command), options_(options), write_(write),
+          interval_(parse_seconds("--refresh", command.refresh))
+    {
+    }
+
+    void look_at(const RenderState& state)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        if (std::chrono::duration<double>(now - last_).count() < interval_) return;
+        const image::Picture picture = picture_of(state.film, options_);
+        for (const std::string& path : command_.outputs)
+            image::write_picture(path, picture, write_);
+        last_ = std::chrono::steady_clock::now();
+    }
+
+private:
+    const RenderCommand& command_;
+    const RenderOptions& options_;
+    const image::WriteOptions& write_;
+    double interval_;
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void print_audit(const Audit& audit, double bar)
+{
+    fmt::print(stderr,
+               "audit: {} blocks rendered again by other samples in {:.1f} s: RMS error {:.3g} JND "
+               "({:.3g} to {:.3g}); {:.1f} % of the pixels within {:.3g} JND; {:.1f} % of those "
+               "predicted to be\n",
+               audit.blocks, audit.seconds, audit.rms, audit.rms_low, audit.rms_high,
+               100 * audit.share_within, bar, 100 * audit.share_covered);
+}
+
 void print_summary(const RenderCommand& command, const RenderResult& result)
 {
     const Statistics& statistics = result.statistics;
@@ -50,6 +100,8 @@ void print_summary(const RenderCommand& command, const RenderResult& result)
     fmt::print(stderr, "{:.2f} s, {:.2f} million samples/s, {:.2f} million rays/s\n",
                result.seconds, double(statistics.paths) / result.seconds * 1e-6,
                rays / result.seconds * 1e-6);
+    fmt::print(stderr, "dispatches {:.1f} % full, scheduling and merging {:.1f} % of the time\n",
+               100 * result.dispatch_fill, 100 * result.scheduling_seconds / result.seconds);
     for (const std::string& path : command.outputs) fmt::print(stderr, "wrote {}\n", path);
 }
 
@@ -89,6 +141,11 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
                      "given more than once. Default: diptych.png")
         ->allow_extra_args(false);
     add_device_flags(*render, command.device);
+    add_error_flags(*render, command.error);
+    render->add_flag("--audit", command.is_audited,
+                     "Render some blocks again by independent samples and print the error found");
+    render->add_option("--refresh", command.refresh,
+                       "Write the pictures in progress so often, as 10s or 2m");
     render->add_option(
         "--pixel", command.pixel,
         "Run the paths of one pixel only, X,Y from the upper left, and print its value");
@@ -130,8 +187,18 @@ int run_render_command(const RenderCommand& command)
 
     watch_for_interrupts();
     RenderOptions options;
-    options.samples = run.scene.samples;
     options.pixel = parse_pixel(run.pixel, run.scene.size);
+    options.viewer = {write.exposure, write.view};
+    set_targets(run.error, run.scene.samples, options);
+    if (run.is_audited && (options.pixel || options.samples < standard_error_samples))
+        throw std::runtime_error(fmt::format("--audit: needs a whole picture with at least {} "
+                                             "samples, or --error or --time",
+                                             standard_error_samples));
+    std::optional<Refresher> refresher;
+    if (!run.refresh.empty()) {
+        refresher.emplace(run, options, write);
+        options.observe = [&](const RenderState& state) { refresher->look_at(state); };
+    }
     options.stop = &is_interrupted;
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
@@ -154,13 +221,23 @@ int run_render_command(const RenderCommand& command)
     if (faults.count > 0) fmt::print(stderr, "notice: {}\n", fault_text(faults, place));
 
     image::Picture picture;
-    if (!run.outputs.empty() || !run.json.empty()) picture = result.film.picture();
+    if (!run.outputs.empty() || !run.json.empty()) picture = picture_of(result.film, options);
     if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
     for (const std::string& path : run.outputs) image::write_picture(path, picture, write);
     if (options.pixel) print_pixel(result.film, *options.pixel);
+    const double aim = options.error > 0 ? options.error : 1;
+    std::optional<ErrorSummary> error;
+    if (result.film.has_standard_error() && !options.pixel)
+        error =
+            summarise_error(result.film, grid_of(scene.settings[0], options), options.viewer, aim);
+    std::optional<Audit> audited;
+    if (run.is_audited) audited = audit(*backend, scene, options, result, aim);
     if (!run.is_quiet) print_summary(run, result);
+    if (!run.is_quiet && error) fmt::print(stderr, "{}\n", ending_text(result, options, *error));
+    if (audited) print_audit(*audited, aim);
     if (!run.json.empty()) {
-        const std::string report = json_report(run, scene, *backend, result, picture, place) + "\n";
+        const std::string report =
+            json_report(run, scene, *backend, result, picture, place, error, audited) + "\n";
         if (run.json == "-")
             std::cout << report << std::flush;
         else

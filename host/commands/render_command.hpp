@@ -1,6 +1,7 @@
 // `diptych render`: a scene to pictures.
 #pragma once
 
+#include "host/commands/error_flags.hpp"
 #include "host/commands/scene_flags.hpp"
 #include "host/image/image.hpp"
 #include "host/render/render.hpp"
@@ -13,11 +14,14 @@ namespace diptych {
 struct RenderCommand {
     SceneFlags scene;
     DeviceFlags device;
+    ErrorFlags error;
     std::vector<std::string> outputs;
     std::string pixel;
     std::string json;
+    std::string refresh;
     std::string view = "standard";
     image::WriteOptions write;
+    bool is_audited = false;
     bool is_quiet = false;
     bool is_strict = false;
     bool is_reproducible = false;

@@ -60,13 +60,15 @@ void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan
     const int samples = options.samples;
     const Settings& settings = scene.settings[0];
     for (const std::string& line : scene.notices) fmt::print(stderr, "notice: {}\n", line);
-    if (samples < standard_error_samples)
+    const std::string count =
+        !is_adaptive(options) ? std::to_string(samples) : fmt::format("64 to {}", samples);
+    if (samples < standard_error_samples && !is_adaptive(options))
         fmt::print(stderr, "notice: fewer than {} samples: no standard-error layer\n",
                    standard_error_samples);
     fmt::print(stderr, "{}\n", backend.description());
     fmt::print(stderr, "{} x {}, {} samples, {} triangles, {} lights, effects: {}\n",
-               settings.width, settings.height, samples, scene.triangles.size(),
-               settings.light_count, fmt::join(effect_names(scene.effects), " "));
+               settings.width, settings.height, count, scene.triangles.size(), settings.light_count,
+               fmt::join(effect_names(scene.effects), " "));
     fmt::print(
         stderr,
         "memory: scene {}, structure about {}, paths {} ({} a dispatch), film {} on the host\n",
@@ -83,10 +85,12 @@ void ProgressBar::show(const Progress& progress)
     if (!is_due && progress.fraction < 1) return;
     last_shown_ = progress.seconds;
     last_fraction_ = progress.fraction;
-    const double rest = progress.seconds * (1 - progress.fraction) / progress.fraction;
-    const std::string text = fmt::format(
-        "{:3.0f} %  {} samples  {:.2f} Mrays/s  {} left", progress.fraction * 100, progress.samples,
-        double(progress.rays) / progress.seconds * 1e-6, duration(rest));
+    const std::string error =
+        progress.error > 0 ? fmt::format("error {:.3g} JND  ", progress.error) : "";
+    const std::string text =
+        fmt::format("{:3.0f} %  {} samples  {}{:.2f} Mrays/s  {} left", progress.fraction * 100,
+                    progress.samples, error, double(progress.rays) / progress.seconds * 1e-6,
+                    duration(progress.seconds_left));
     if (is_terminal_) {
         const int filled = int(progress.fraction * 30);
         fmt::print(stderr, "\r[{:<30}] {}   ", std::string(size_t(filled), '='), text);
@@ -136,7 +140,9 @@ std::string scene_hash(const SceneData& scene)
 
 std::string json_report(const RenderCommand& command, const SceneData& scene,
                         const Backend& backend, const RenderResult& result,
-                        const image::Picture& picture, const std::optional<FaultPlace>& fault)
+                        const image::Picture& picture, const std::optional<FaultPlace>& fault,
+                        const std::optional<ErrorSummary>& error,
+                        const std::optional<Audit>& audited)
 {
     const Statistics& statistics = result.statistics;
     json layers = json::object();
@@ -166,9 +172,25 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
         {"effects", effect_names(scene.effects)},
         {"degenerate_triangles", scene.degenerate_triangles},
         {"notices", scene.notices},
+        {"dispatch_fill", result.dispatch_fill},
+        {"scheduling_seconds", result.scheduling_seconds},
         {"dropped_samples", result.film.faults().count},
         {"sha256", layers},
     };
+    if (error)
+        report["error"] = {
+            {"target", result.target},        {"rms", error->rms},
+            {"block_p95", error->block_p95},  {"share_within", error->share_within},
+            {"blocks", result.blocks},        {"unfinished_blocks", result.unfinished_blocks},
+            {"rounds", result.schedule.round}};
+    if (audited)
+        report["audit"] = {{"blocks", audited->blocks},
+                           {"rms", audited->rms},
+                           {"rms_low", audited->rms_low},
+                           {"rms_high", audited->rms_high},
+                           {"share_within", audited->share_within},
+                           {"share_covered", audited->share_covered},
+                           {"seconds", audited->seconds}};
     if (fault)
         report["first_dropped"] = {{"x", fault->x},           {"y", fault->y},
                                    {"sample", fault->sample}, {"bounce", fault->bounce},

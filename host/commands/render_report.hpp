@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host/commands/render_command.hpp"
+#include "host/render/audit.hpp"
 #include "host/render/render.hpp"
 
 #include <cstdio>
@@ -36,7 +37,9 @@ std::optional<FaultPlace> find_fault(Backend& backend, const Faults& faults, int
 
 std::string json_report(const RenderCommand& command, const SceneData& scene,
                         const Backend& backend, const RenderResult& result,
-                        const image::Picture& picture, const std::optional<FaultPlace>& fault);
+                        const image::Picture& picture, const std::optional<FaultPlace>& fault,
+                        const std::optional<ErrorSummary>& error,
+                        const std::optional<Audit>& audited);
 
 void add_metadata(image::Picture& picture, const RenderCommand& command, const SceneData& scene,
                   const Backend& backend, const RenderResult& result);

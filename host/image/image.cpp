@@ -30,6 +30,11 @@ Layer standard_error_layer(std::vector<float> rgb)
     return {"standard_error", {"R", "G", "B"}, std::move(rgb), {}};
 }
 
+Layer predicted_error_layer(std::vector<float> jnd)
+{
+    return {"predicted_error", {""}, std::move(jnd), {}};
+}
+
 Layer id_layer(std::string name, std::vector<uint32_t> ids)
 {
     return {std::move(name), {""}, {}, std::move(ids)};

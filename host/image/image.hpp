@@ -43,7 +43,8 @@ Layer albedo_layer(std::vector<float> rgb);   // albedo.R,G,B
 Layer normal_layer(std::vector<float> xyz);   // normal.X,Y,Z: shading normal, world space
 Layer depth_layer(
     std::vector<float> distances);  // Z: the one reserved name for depth in an OpenEXR file
-Layer standard_error_layer(std::vector<float> rgb);  // standard_error.R,G,B: of the beauty's mean
+Layer standard_error_layer(std::vector<float> rgb);   // standard_error.R,G,B: of the beauty's mean
+Layer predicted_error_layer(std::vector<float> jnd);  // predicted_error: visible error, see manual
 Layer id_layer(std::string name, std::vector<uint32_t>);  // object_id, material_id, sample_count
 
 // The layer of that name, or null.

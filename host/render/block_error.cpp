@@ -23,7 +23,19 @@ void for_pixels_around(const Film& film, int x, int y, const Visit& visit)
         for (int u = std::max(x - 1, window.x); u <= right; ++u) visit(u, v);
 }
 
-// Standard deviation of the albedo over its mean, 3 x 3 pixels.
+int quantised(double error)
+{
+    return int(std::min(std::ceil(error * error_unit), double(1 << 30)));
+}
+
+// The probability that a normal error of this standard deviation is smaller than `bound`.
+double share_below(double bound, double deviation)
+{
+    return deviation > 0 ? std::erf(bound / (deviation * std::sqrt(2.0))) : 1;
+}
+
+}  // namespace
+
 float texture_contrast(const Film& film, int x, int y)
 {
     float sum = 0, square = 0;
@@ -39,24 +51,23 @@ float texture_contrast(const Film& film, int x, int y)
     return mean > 0 ? std::sqrt(variance) / mean : 0;
 }
 
-int quantised(double error)
-{
-    return int(std::min(std::ceil(error * error_unit), double(1 << 30)));
-}
-
-// The probability that a normal error of this standard deviation is smaller than `bound`.
-double share_below(double bound, double deviation)
-{
-    return deviation > 0 ? std::erf(bound / (deviation * std::sqrt(2.0))) : 1;
-}
-
-}  // namespace
-
 float pixel_error(const Film& film, int x, int y, const Viewer& viewer)
 {
     const std::array<float, 3> error = film.standard_error(x, y);
     if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
     return visible_error(film.radiance(x, y), error, texture_contrast(film, x, y), viewer);
+}
+
+float pixel_bound(const Film& film, int x, int y, const Viewer& viewer)
+{
+    float sum = 0;
+    int count = 0;
+    for_pixels_around(film, x, y, [&](int u, int v) {
+        const float error = pixel_error(film, u, v, viewer);
+        sum += error * error;
+        ++count;
+    });
+    return confidence * std::sqrt(sum / float(count));
 }
 
 BlockError block_error(const Film& film, Pixel corner, int shift, const Viewer& viewer)

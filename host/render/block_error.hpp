@@ -11,8 +11,15 @@ namespace diptych {
 // its spread is taken over many pixels, so that no Student factor is due.
 inline constexpr float confidence = 1.96f;
 
+// Standard deviation of the albedo over its mean, 3 x 3 pixels.
+float texture_contrast(const Film& film, int x, int y);
+
 // One standard error of a pixel of the film, in JND; 0 with fewer than two batches.
 float pixel_error(const Film& film, int x, int y, const Viewer& viewer);
+
+// What a pixel's error stays below with 95 % probability, in JND: from its own batches and those of
+// its neighbours, 3 x 3 pixels.
+float pixel_bound(const Film& film, int x, int y, const Viewer& viewer);
 
 // RMS of `confidence` standard errors over the block's pixels that the film holds.
 BlockError block_error(const Film& film, Pixel corner, int shift, const Viewer& viewer);

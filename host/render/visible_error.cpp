@@ -20,6 +20,14 @@ float lightness(const image::Rgb& radiance, const Viewer& viewer)
     return y > linear_end ? 116 * std::cbrt(y) - 16 : y * (24389.0f / 27);
 }
 
+float visible_difference(const image::Rgb& a, const image::Rgb& b, float contrast,
+                         const Viewer& viewer)
+{
+    const float masking = std::min(1 + 10 * contrast, most_masking);
+    return std::abs(lightness(a, viewer) - lightness(b, viewer)) /
+           (seen_from_pixel_to_pixel * masking);
+}
+
 float visible_error(const image::Rgb& mean, const image::Rgb& error, float contrast,
                     const Viewer& viewer)
 {
@@ -28,9 +36,7 @@ float visible_error(const image::Rgb& mean, const image::Rgb& error, float contr
         brighter[c] = mean[c] + error[c];
         darker[c] = std::max(mean[c] - error[c], 0.0f);
     }
-    const float difference = lightness(brighter, viewer) - lightness(darker, viewer);
-    const float masking = std::min(1 + 10 * contrast, most_masking);
-    return 0.5f * std::abs(difference) / (seen_from_pixel_to_pixel * masking);
+    return 0.5f * visible_difference(brighter, darker, contrast, viewer);
 }
 
 }  // namespace diptych

@@ -189,6 +189,20 @@ TEST_F(BadInput, SizesAndSamplesOfNoSense)
     expect_refusal({in_.write("fine.gltf", triangle()), "--camera", "7"}, "7");
 }
 
+TEST_F(BadInput, TargetsOfNoSense)
+{
+    for (const char* error : {"0", "-1", "nan", "inf", "1e9", "much"})
+        expect_refusal({"--error", error}, "--error");
+    for (const char* time : {"0", "0s", "-3s", "nan", "5x", "s", "inf"})
+        expect_refusal({"--time", time}, "--time");
+    expect_refusal({"--refresh", "0"}, "--refresh");
+    expect_refusal({"--unbiased"}, "--unbiased");
+    expect_refusal({"--unbiased", "--error", "1", "--time", "1s"}, "--unbiased");
+    expect_refusal({"--unbiased", "--error", "1", "--samples", "64"}, "--samples");
+    expect_refusal({"--error", "1", "--pixel", "1,1"}, "--pixel");
+    expect_refusal({"--audit", "--samples", "64"}, "--audit");
+}
+
 // Refused before anything is rendered: these would take hours.
 TEST_F(BadInput, PicturesThatCannotBeWritten)
 {

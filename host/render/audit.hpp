@@ -1,0 +1,24 @@
+// The error of a finished picture as independent samples find it.
+#pragma once
+
+#include "host/render/render.hpp"
+
+namespace diptych {
+
+struct Audit {
+    int blocks = 0;      // that were rendered again
+    double rms = 0;      // JND, of all their pixels
+    double rms_low = 0;  // ends of its 95 % interval
+    double rms_high = 0;
+    double share_within = 0;   // of the pixels: nearer to the new ones than `bar`
+    double share_covered = 0;  // of those predicted to be within `bar`: were so
+    double seconds = 0;
+};
+
+// Renders about one block in sixteen anew, by another seed and four times the samples, and
+// compares. The noise that the new samples have themselves is taken off the RMS, not off the
+// shares. Uploads the scene again, and leaves it uploaded with its own seed.
+Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
+            const RenderResult& result, double bar);
+
+}  // namespace diptych

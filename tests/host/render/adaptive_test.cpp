@@ -1,0 +1,125 @@
+// Renders with an error target: the same picture however it is cut up, complete at any time.
+#include "host/render/render.hpp"
+#include "tests/laws/measure.hpp"
+
+#include <cstring>
+
+namespace {
+
+using namespace diptych;
+using namespace laws;
+
+RenderOptions to_error(double error)
+{
+    RenderOptions options;
+    options.error = error;
+    options.samples = 512;
+    return options;
+}
+
+struct Picture {
+    std::vector<float> beauty;
+    std::vector<uint32_t> counts;
+};
+
+Picture picture_of(const RenderResult& result)
+{
+    const image::Picture picture = result.film.picture();
+    return {image::beauty_of(picture).pixels, image::find_layer(picture, "sample_count")->ids};
+}
+
+Picture render_with(const std::string& backend_name, const BackendOptions& backend_options,
+                    const RenderOptions& options)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::unique_ptr<Backend> backend = make_backend(backend_name, backend_options);
+    backend->upload(scene);
+    return picture_of(render(*backend, scene, options));
+}
+
+bool is_same(const Picture& a, const Picture& b)
+{
+    return a.counts == b.counts &&
+           std::memcmp(a.beauty.data(), b.beauty.data(), 4 * a.beauty.size()) == 0;
+}
+
+TEST(Adaptive, ThreadsMemoryAndDispatchesChangeNoBit)
+{
+    for (const char* backend : {"cpu", "twin"}) {
+        BackendOptions large, small;
+        large.threads = 2;
+        small.threads = 1;
+        small.memory_bytes = 3u << 20;
+        const Picture one = render_with(backend, large, to_error(6));
+        EXPECT_TRUE(is_same(one, render_with(backend, small, to_error(6)))) << backend;
+        RenderOptions pieces = to_error(6);
+        pieces.most_items = 3;
+        EXPECT_TRUE(is_same(one, render_with(backend, large, pieces))) << backend;
+        const auto [least, most] = std::minmax_element(one.counts.begin(), one.counts.end());
+        EXPECT_EQ(*least, 64u) << "some block is easy";
+        EXPECT_GT(*most, 64u) << "some block is not";
+    }
+}
+
+TEST(Adaptive, GoesOnFromAnyDispatchToTheSamePicture)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::unique_ptr<Backend> backend = make_backend("cpu", {});
+    backend->upload(scene);
+    for (const bool is_unbiased : {false, true}) {
+        RenderOptions options = to_error(6);
+        options.is_unbiased = is_unbiased;
+        options.most_items = 5;
+        std::vector<RenderState> states;
+        int calls = 0;
+        options.observe = [&](const RenderState& state) {
+            if (++calls % 37 == 0) states.push_back(state);
+        };
+        const Picture whole = picture_of(render(*backend, scene, options));
+        options.observe = nullptr;
+        options.most_items = 0;
+        EXPECT_GT(states.size(), 2u);
+        for (const RenderState& state : states)
+            EXPECT_TRUE(is_same(whole, picture_of(render(*backend, scene, options, state))))
+                << "from round " << state.schedule.round;
+    }
+}
+
+TEST(Adaptive, ATimeLimitLeavesACompletePicture)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::unique_ptr<Backend> backend = make_backend("cpu", {});
+    backend->upload(scene);
+    RenderOptions options;
+    options.samples = most_adaptive_samples;
+    options.time_limit = 1e-9;
+    const RenderResult result = render(*backend, scene, options);
+    EXPECT_EQ(result.ending, Ending::TimeOver);
+    EXPECT_TRUE(result.is_complete);
+    for (const uint32_t count : picture_of(result).counts) ASSERT_EQ(count, 1u);
+}
+
+TEST(Adaptive, ALooseTargetIsReachedAndSaidToBe)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::unique_ptr<Backend> backend = make_backend("cpu", {});
+    backend->upload(scene);
+    const RenderResult reached = render(*backend, scene, to_error(50));
+    EXPECT_EQ(reached.ending, Ending::TargetReached);
+    EXPECT_EQ(reached.unfinished_blocks, 0);
+    const RenderResult missed = render(*backend, scene, to_error(0.05));
+    EXPECT_EQ(missed.ending, Ending::SamplesDone);
+    EXPECT_GT(missed.unfinished_blocks, 0);
+}
+
+TEST(Adaptive, APixelsFilmIsOnePixel)
+{
+    const SceneData scene = busy_scene(72, 40);
+    RenderOptions options;
+    options.pixel = Pixel{3, 4};
+    EXPECT_LT(film_bytes(scene.settings[0], options), 1000u);
+    options.pixel.reset();
+    EXPECT_GT(film_bytes(scene.settings[0], options), size_t(72 * 40 * 100));
+}
+
+}  // namespace
