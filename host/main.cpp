@@ -3,6 +3,8 @@
 #include "host/commands/debug_command.hpp"
 #include "host/commands/devices_command.hpp"
 #include "host/commands/explain_command.hpp"
+#include "host/commands/farm_command.hpp"
+#include "host/commands/merge_command.hpp"
 #include "host/commands/render_command.hpp"
 #include "host/commands/selftest_command.hpp"
 #include "host/commands/texture_command.hpp"
@@ -52,6 +54,10 @@ int run(int count, char** arguments)
     RenderCommand render;
     render.command_line = joined(count, arguments);
     const CLI::App* render_command = add_render_command(app, render);
+    MergeCommand merge;
+    const CLI::App* merge_command = add_merge_command(app, merge);
+    FarmCommand farm;
+    const CLI::App* farm_command = add_farm_command(app, farm);
     CompareBackendsCommand compare;
     CLI::App* compare_command = image::add_compare_command(app, compare.compare);
     add_compare_backends_flags(*compare_command, compare);
@@ -72,6 +78,8 @@ int run(int count, char** arguments)
                                           : refuse(app, error, count > 1 ? arguments[1] : "");
     }
     if (render_command->parsed()) return run_render_command(render);
+    if (merge_command->parsed()) return run_merge_command(merge);
+    if (farm_command->parsed()) return run_farm_command(farm);
     if (explain_command->parsed()) return run_explain_command(explain);
     if (devices_command->parsed()) return run_devices_command();
     if (selftest_command->parsed()) return run_selftest_command(selftest);

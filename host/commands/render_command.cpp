@@ -1,5 +1,6 @@
 #include "host/commands/render_command.hpp"
 
+#include "host/commands/picture_flags.hpp"
 #include "host/commands/render_report.hpp"
 
 #include <CLI/CLI.hpp>
@@ -28,14 +29,7 @@ void watch_for_interrupts()
     action.sa_flags = SA_RESETHAND;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
-}
-
-image::View parse_view(const std::string& text)
-{
-    if (text == "standard") return image::View::Standard;
-    if (text == "neutral") return image::View::Neutral;
-    if (text == "filmic") return image::View::Filmic;
-    throw std::runtime_error("--view " + text + ": no such view; use standard, neutral or filmic");
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to tell
 }
 
 void print_pixel(const Film& film, const Pixel& pixel)
@@ -131,6 +125,13 @@ std::optional<Pixel> parse_pixel(const std::string& text, const std::string& siz
     return pixel;
 }
 
+// A slice or a pixel is not one to look at, unless a file is named for it.
+bool wants_picture(const RenderCommand& command)
+{
+    return command.pixel.empty() &&
+           (command.checkpoint.range.empty() || command.checkpoint.file.empty());
+}
+
 CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
 {
     CLI::App* render = app.add_subcommand("render", "Render a scene to pictures");
@@ -149,14 +150,8 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
     render->add_option(
         "--pixel", command.pixel,
         "Run the paths of one pixel only, X,Y from the upper left, and print its value");
-    render->add_option("--exposure", command.write.exposure, "Stops, for display pictures")
-        ->capture_default_str();
-    render
-        ->add_option("--view", command.view,
-                     "How radiance becomes display colours: standard, neutral or filmic")
-        ->capture_default_str();
-    render->add_flag("--half", command.write.half, "EXR: colours and normals in half precision");
-    render->add_flag("--16bit", command.write.sixteen_bit, "PNG and TIFF: 16 bits a channel");
+    add_picture_flags(*render, command.view, command.write);
+    add_checkpoint_flags(*render, command.checkpoint);
     render->add_flag("--quiet", command.is_quiet, "Print errors only");
     render->add_flag("--strict", command.is_strict,
                      "Make a sample that is not finite an error instead of dropping it");
@@ -175,13 +170,9 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
 
 int run_render_command(const RenderCommand& command)
 {
-    image::WriteOptions write = command.write;
-    write.view = parse_view(command.view);
-    if (!(std::abs(write.exposure) <= 100))
-        throw std::runtime_error(fmt::format(
-            "--exposure {}: out of range; give stops from -100 to 100", write.exposure));
+    const image::WriteOptions write = picture_options(command.view, command.write);
     RenderCommand run = command;
-    if (run.outputs.empty() && run.pixel.empty()) run.outputs.push_back("diptych.png");
+    if (run.outputs.empty() && wants_picture(run)) run.outputs.push_back("diptych.png");
     for (const std::string& path : run.outputs) image::check_writable(path);
     if (!run.json.empty() && run.json != "-") image::check_file_writable(run.json);
 
@@ -190,6 +181,7 @@ int run_render_command(const RenderCommand& command)
     options.pixel = parse_pixel(run.pixel, run.scene.size);
     options.viewer = {write.exposure, write.view};
     set_targets(run.error, run.scene.samples, options);
+    set_range(run.checkpoint.range, options);
     if (run.is_audited && (options.pixel || options.samples < standard_error_samples))
         throw std::runtime_error(fmt::format("--audit: needs a whole picture with at least {} "
                                              "samples, or --error or --time",
@@ -200,17 +192,24 @@ int run_render_command(const RenderCommand& command)
         options.observe = [&](const RenderState& state) { refresher->look_at(state); };
     }
     options.stop = &is_interrupted;
+    if (options.pixel && !run.checkpoint.file.empty())
+        throw std::runtime_error("--checkpoint: not for a single pixel; leave out --pixel");
+    RenderCheckpoint checkpoint(run.checkpoint, options.first_sample, options.samples);
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
     SceneData scene = load_from_flags(run.scene);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
+    std::optional<RenderState> start =
+        checkpoint.begin(scene, run.device.backend, *backend, run.is_quiet);
     backend->upload(scene);
+    options.observe = [&](const RenderState& state) { checkpoint.observe(state); };
 
     ProgressBar bar;
     if (!run.is_quiet) options.progress = [&](const Progress& progress) { bar.show(progress); };
-    const RenderResult result = render(*backend, scene, options);
+    const RenderResult result = render(*backend, scene, options, std::move(start));
     if (!run.is_quiet) bar.finish();
-    if (result.statistics.paths == 0)
+    const std::string lost = checkpoint.finish(result.film, result.schedule);
+    if (!result.is_complete && result.statistics.paths == 0 && checkpoint.earlier_seconds() == 0)
         fmt::print(stderr, "notice: interrupted before the first samples; pictures are black\n");
 
     const Faults& faults = result.film.faults();
@@ -243,6 +242,7 @@ int run_render_command(const RenderCommand& command)
         else
             image::write_file_whole(run.json, report);
     }
+    if (!lost.empty()) throw std::runtime_error(lost);
     return result.is_complete ? 0 : 130;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/commands/error_flags.hpp"
+#include "host/commands/render_checkpoint.hpp"
 #include "host/commands/scene_flags.hpp"
 #include "host/image/image.hpp"
 #include "host/render/render.hpp"
@@ -15,6 +16,7 @@ struct RenderCommand {
     SceneFlags scene;
     DeviceFlags device;
     ErrorFlags error;
+    CheckpointFlags checkpoint;
     std::vector<std::string> outputs;
     std::string pixel;
     std::string json;

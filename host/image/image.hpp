@@ -70,6 +70,9 @@ struct WriteOptions {
 void write_picture(const std::string& path, const Picture& picture,
                    const WriteOptions& options = {});
 
+// Its extension is one that write_picture knows.
+bool is_picture_name(const std::string& path);
+
 // Throws now what write_picture would throw after the rendering: unknown extension, no such folder,
 // not writable.
 void check_writable(const std::string& path);

@@ -36,16 +36,23 @@ constexpr Format FORMATS[] = {{".exr", "openexr"}, {".png", "png"},  {".jpg", "j
     throw std::runtime_error(path + ": " + what);
 }
 
-std::string encoder_of(const std::string& path)
+// Null for a name that is no picture's.
+const char* encoder_by_extension(const std::string& path)
 {
     std::string extension = fs::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
     for (const Format& format : FORMATS)
         if (extension == format.extension) return format.encoder;
+    return nullptr;
+}
+
+std::string encoder_of(const std::string& path)
+{
+    if (const char* encoder = encoder_by_extension(path)) return encoder;
     fail(path,
          fmt::format("unknown picture format '{}'; use .exr, .png, .jpg, .jpeg, .tif or .tiff",
-                     extension));
+                     fs::path(path).extension().string()));
 }
 
 fs::path temporary_beside(const fs::path& path)
@@ -281,6 +288,8 @@ void write_file_whole(const std::string& path, std::string_view bytes)
     file.write(bytes);
     file.put_in_place();
 }
+
+bool is_picture_name(const std::string& path) { return encoder_by_extension(path) != nullptr; }
 
 void check_writable(const std::string& path)
 {

@@ -1,0 +1,256 @@
+#include "host/commands/farm_command.hpp"
+
+#include "backends/textures/subprocess.hpp"
+#include "host/commands/farm_script.hpp"
+#include "host/commands/render_command.hpp"
+#include "host/commands/slurm.hpp"
+#include "host/render/checkpoint.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+#include <unistd.h>
+
+namespace diptych {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> is_interrupted{false};
+
+extern "C" void stop_watching(int) { is_interrupted = true; }
+
+// What the tasks will be told, read as they will read it: mistakes show here, not in their logs.
+void check_render_flags(const FarmCommand& command)
+{
+    CLI::App app;
+    RenderCommand render;
+    add_render_command(app, render);
+    std::vector<std::string> words = {"render"};
+    words.insert(words.end(), command.render.begin(), command.render.end());
+    std::reverse(words.begin(), words.end());
+    try {
+        app.parse(words);
+    } catch (const CLI::ParseError& error) {
+        throw std::runtime_error(fmt::format("farm: {}; see diptych render --help", error.what()));
+    }
+    const CheckpointFlags& flags = render.checkpoint;
+    if (!flags.file.empty() || !flags.range.empty() || flags.is_restart || !render.json.empty() ||
+        !render.pixel.empty())
+        throw std::runtime_error("farm: --checkpoint, --restart, --range, --pixel and --json are "
+                                 "the tasks' own; leave them out");
+    if (!render.scene.scene.empty() && !fs::exists(render.scene.scene))
+        throw std::runtime_error(render.scene.scene + ": no such file; name a scene");
+}
+
+void check(const FarmCommand& command)
+{
+    const int groups = (command.samples + QUANTUM - 1) / QUANTUM;
+    if (command.tasks > groups)
+        throw std::runtime_error(
+            fmt::format("--tasks {}: --samples {} are {} groups of {}, which are not divided; ask "
+                        "for at most {} tasks",
+                        command.tasks, command.samples, groups, QUANTUM, groups));
+    for (const std::string& path : command.outputs) image::check_writable(path);
+    check_render_flags(command);
+    expect_slurm();
+}
+
+// The files that the tasks share.
+struct Folder {
+    fs::path path;
+
+    std::string slice(int task) const { return path / fmt::format("slice-{}.checkpoint", task); }
+    std::string log(const std::string& task) const { return path / fmt::format("log-{}", task); }
+};
+
+Folder make_folder(const FarmCommand& command)
+{
+    const Folder folder{command.folder.empty() ? command.outputs.at(0) + ".farm" : command.folder};
+    std::error_code error;
+    fs::create_directories(folder.path, error);
+    if (error)
+        throw std::runtime_error(
+            fmt::format("{}: cannot be made ({}); name a folder that all machines see with "
+                        "--folder",
+                        folder.path.string(), error.message()));
+    const std::string script = folder.path / "render.sbatch";
+    if (command.script.empty())
+        image::write_file_whole(script, farm_script);
+    else
+        fs::copy_file(command.script, script, fs::copy_options::overwrite_existing);
+    return folder;
+}
+
+struct Jobs {
+    std::string render;
+    std::string merge;
+};
+
+Jobs submit(const FarmCommand& command, const Folder& folder)
+{
+    std::error_code ignored;
+    if (const fs::path self = fs::read_symlink("/proc/self/exe", ignored); !ignored)
+        setenv("DIPTYCH", self.c_str(), 0);
+    const std::string script = folder.path / "render.sbatch";
+    std::vector<std::string> words = command.sbatch;
+    words.insert(words.end(),
+                 {fmt::format("--array=0-{}", command.tasks - 1), "--output=" + folder.log("%a"),
+                  script, "render", std::to_string(command.samples), folder.path.string()});
+    words.insert(words.end(), command.render.begin(), command.render.end());
+    words.push_back("--quiet");
+    Jobs jobs;
+    jobs.render = submit_job(words);
+
+    words = command.sbatch;
+    words.insert(words.end(), {"--dependency=afterok:" + jobs.render, "--kill-on-invalid-dep=yes",
+                               "--output=" + folder.log("merge"), script, "merge",
+                               std::to_string(command.tasks), folder.path.string()});
+    for (const std::string& path : command.outputs) words.insert(words.end(), {"-o", path});
+    jobs.merge = submit_job(words);
+    return jobs;
+}
+
+double fraction_of(const FarmCommand& command, const Folder& folder)
+{
+    double sum = 0;
+    for (int task = 0; task < command.tasks; ++task) {
+        try {
+            sum += fraction_done(folder.slice(task));
+        } catch (const std::runtime_error&) {
+            // not begun
+        }
+    }
+    return sum / command.tasks;
+}
+
+// The last line that a program has left in a log.
+std::string last_line(const std::string& path)
+{
+    std::ifstream in(path);
+    std::string line, last;
+    while (std::getline(in, line))
+        if (!line.empty()) last = line;
+    return last;
+}
+
+[[noreturn]] void tell_what_failed(const FarmCommand& command, const Folder& folder)
+{
+    for (int task = 0; task < command.tasks; ++task) {
+        const std::string log = folder.log(std::to_string(task)), line = last_line(log);
+        if (line.find("diptych: ") == 0)
+            throw std::runtime_error(fmt::format("farm: task {}: {}", task, line.substr(9)));
+    }
+    const std::string line = last_line(folder.log("merge"));
+    throw std::runtime_error(
+        fmt::format("farm: there is no picture ({}); see the logs in {}, and submit again to go on "
+                    "from the checkpoints there",
+                    line.empty() ? "a task has failed" : line, folder.path.string()));
+}
+
+void show(double fraction, const JobCounts& counts, bool is_terminal)
+{
+    const std::string text = fmt::format("{:3.0f} %  {} running, {} waiting", 100 * fraction,
+                                         counts.running, counts.waiting);
+    if (is_terminal)
+        fmt::print(stderr, "\r{}   ", text);
+    else
+        fmt::print(stderr, "{}\n", text);
+    std::fflush(stderr);
+}
+
+// Until neither job is in the queue. False when interrupted.
+bool watch(const FarmCommand& command, const Folder& folder, const Jobs& jobs)
+{
+    std::signal(SIGINT, stop_watching);
+    std::signal(SIGTERM, stop_watching);
+    const bool is_terminal = isatty(STDERR_FILENO) != 0;
+    std::string last;
+    for (bool is_over = false; !is_over;) {
+        JobCounts counts;
+        if (count_jobs({jobs.render, jobs.merge}, counts)) {
+            is_over = counts.running + counts.waiting == 0;
+            const double fraction = fraction_of(command, folder);
+            const std::string now =
+                fmt::format("{:.2f} {} {}", fraction, counts.running, counts.waiting);
+            if (now != last) show(fraction, counts, is_terminal);
+            last = now;
+            if (counts.never) run_program({"scancel", jobs.merge});
+        }
+        for (int k = 0; k < 10 && !is_over; ++k) {
+            if (is_interrupted) return false;
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+    }
+    if (is_terminal) fmt::print(stderr, "\n");
+    return true;
+}
+
+bool are_newer(const std::vector<std::string>& paths, fs::file_time_type begin)
+{
+    std::error_code error;
+    for (const std::string& path : paths)
+        if (fs::last_write_time(path, error) < begin || error) return false;
+    return true;
+}
+
+}  // namespace
+
+CLI::App* add_farm_command(CLI::App& app, FarmCommand& command)
+{
+    CLI::App* farm = app.add_subcommand("farm", "Render a picture on many machines, with Slurm");
+    farm->allow_extras();
+    farm->add_option("--tasks", command.tasks, "Slices, each a task of its own")
+        ->required()
+        ->check(CLI::Range(1, 100000));
+    farm->add_option("--samples", command.samples, "Samples a pixel, in all")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1 << 24));
+    farm->add_option("-o,--output", command.outputs,
+                     "Picture to write, as of diptych render. May be given more than once")
+        ->allow_extra_args(false)
+        ->required();
+    farm->add_option("--folder", command.folder,
+                     "For checkpoints and logs; all machines must see it. Default: the first "
+                     "picture's name and .farm. What it holds is continued");
+    farm->add_option("--sbatch", command.sbatch,
+                     "A word for sbatch, as --sbatch=--partition=long. May be given more than once")
+        ->allow_extra_args(false);
+    farm->add_option("--script", command.script,
+                     "Submit this in place of ci/slurm/render.sbatch, which the program holds");
+    farm->add_flag("--detach", command.is_detached, "Submit, and do not wait");
+    farm->footer("Everything else, the scene first, is given to diptych render.\n"
+                 "Exit codes: 0 the picture is there, 2 error, 130 no longer watched (the jobs go "
+                 "on).");
+    farm->callback([farm, &command] { command.render = farm->remaining(); });
+    return farm;
+}
+
+int run_farm_command(const FarmCommand& command)
+{
+    check(command);
+    const Folder folder = make_folder(command);
+    std::ofstream(folder.path / "begun").put('\n');  // by the clock of the files
+    const fs::file_time_type begin = fs::last_write_time(folder.path / "begun");
+    const Jobs jobs = submit(command, folder);
+    fmt::print(stderr, "job {}: {} tasks; job {} merges them; checkpoints and logs in {}\n",
+               jobs.render, command.tasks, jobs.merge, folder.path.string());
+    if (command.is_detached) return 0;
+    if (!watch(command, folder, jobs)) {
+        fmt::print(stderr, "\nno longer watching; the jobs go on (scancel {} {} ends them)\n",
+                   jobs.render, jobs.merge);
+        return 130;
+    }
+    if (!are_newer(command.outputs, begin)) tell_what_failed(command, folder);
+    for (const std::string& path : command.outputs) fmt::print(stderr, "wrote {}\n", path);
+    return 0;
+}
+
+}  // namespace diptych

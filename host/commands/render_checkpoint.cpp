@@ -1,0 +1,154 @@
+#include "host/commands/render_checkpoint.hpp"
+
+#include "host/render/checkpoint_merge.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+#include <stdexcept>
+
+namespace diptych {
+namespace {
+
+[[noreturn]] void refuse(const std::string& flag, const std::string& text, const std::string& what)
+{
+    throw std::runtime_error(fmt::format("{} {}: {}", flag, text, what));
+}
+
+std::string joined(const std::vector<std::string>& names)
+{
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+void add_checkpoint_flags(CLI::App& app, CheckpointFlags& flags)
+{
+    app.add_option("--checkpoint", flags.file,
+                   "Keep the render's state in this file, and go on from it where it exists: the "
+                   "picture is the one of a render that was never interrupted");
+    app.add_option("--every", flags.every,
+                   "Time between two writings of the checkpoint, as 10s, 5m, 1h; longer where "
+                   "writing would take more than 1 % of the time")
+        ->capture_default_str();
+    app.add_flag("--restart", flags.is_restart, "Begin anew, whatever the checkpoint holds");
+    app.add_option("--range", flags.range,
+                   "Render only samples A..B of each pixel, A to B - 1, of the --samples of the "
+                   "whole; diptych merge puts the checkpoints of such slices together");
+}
+
+double parse_seconds(const std::string& flag, const std::string& text)
+{
+    std::string_view number = text;
+    double unit = 1;
+    if (!number.empty()) {
+        const size_t k = std::string_view("smh").find(number.back());
+        if (k != std::string_view::npos) {
+            unit = k == 0 ? 1 : k == 1 ? 60 : 3600;
+            number.remove_suffix(1);
+        }
+    }
+    double value = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (error != std::errc{} || end != number.data() + number.size() || !(value > 0) ||
+        !(value * unit <= 1e8))
+        refuse(flag, text, "not a time; give seconds above 0, or 10s, 5m, 1.5h");
+    return value * unit;
+}
+
+std::pair<int, int> parse_range(const std::string& text, int samples)
+{
+    if (text.empty()) return {0, samples};
+    const size_t dots = text.find("..");
+    int first = 0, end = 0;
+    const auto parse = [&](size_t from, size_t to, int& value) {
+        const auto result = std::from_chars(text.data() + from, text.data() + to, value);
+        return result.ec == std::errc{} && result.ptr == text.data() + to;
+    };
+    if (dots == std::string::npos || !parse(0, dots, first) || !parse(dots + 2, text.size(), end) ||
+        first < 0 || first >= end)
+        refuse("--range", text, "not a range of samples; give A..B, as 0..128");
+    if (end > samples)
+        refuse("--range", text,
+               fmt::format("beyond the last of --samples {}; give the samples of the whole picture "
+                           "with --samples",
+                           samples));
+    if (first % QUANTUM != 0 || (end % QUANTUM != 0 && end != samples))
+        refuse("--range", text,
+               fmt::format("cuts a group of {0} samples; give multiples of {0}", QUANTUM));
+    return {first, end};
+}
+
+RenderCheckpoint::RenderCheckpoint(const CheckpointFlags& flags, int first, int end)
+    : flags_(flags), seconds_between_(parse_seconds("--every", flags.every)), first_(first),
+      end_(end)
+{
+    if (flags_.file.empty() && flags_.is_restart)
+        throw std::runtime_error("--restart: there is no checkpoint to begin anew; name it with "
+                                 "--checkpoint, or leave --restart out");
+    if (flags_.file.empty()) return;
+    lock_.emplace(flags_.file);
+    {
+        SafeFile probe(flags_.file);
+    }
+    std::error_code ignored;
+    if (!flags_.is_restart && std::filesystem::exists(flags_.file, ignored))
+        found_ = read_checkpoint(flags_.file);
+}
+
+std::optional<RenderState> RenderCheckpoint::begin(const SceneData& scene,
+                                                   const std::string& backend_name,
+                                                   const Backend& backend, bool is_quiet)
+{
+    if (flags_.file.empty()) return std::nullopt;
+    CheckpointHead head;
+    head.subject = checkpoint_subject(scene, "diptych " DIPTYCH_VERSION);
+    head.backends = {backend_name};
+    head.slices = {{first_, end_, {}}};
+    std::optional<RenderState> state;
+    if (found_) {
+        const CheckpointHead& old = found_->head;
+        const std::string difference = difference_between(old.subject, head.subject);
+        if (!difference.empty())
+            refuse(flags_.file, "is of another picture",
+                   fmt::format("it and this render differ in {}; name another file, or begin anew "
+                               "with --restart",
+                               difference));
+        head.backends = old.backends;
+        if (std::count(head.backends.begin(), head.backends.end(), backend_name) == 0)
+            head.backends.push_back(backend_name);
+        head.seconds = earlier_seconds_ = old.seconds;
+        head.rays = old.rays;
+        head.paths = old.paths;
+        if (!is_quiet && old.backends != std::vector{backend_name})
+            fmt::print(stderr, "notice: {} was begun on {}: the picture will be by both\n",
+                       flags_.file, joined(old.backends));
+        if (!is_quiet && !old.slices.empty())
+            fmt::print(stderr, "going on from {}: {:.0f} % of samples {}..{}, {:.1f} s so far\n",
+                       flags_.file, 100 * fraction_done(old), old.slices[0].first,
+                       old.slices[0].end, old.seconds);
+        state = continued(std::move(*found_), flags_.file, first_, end_);
+        found_.reset();
+    }
+    writer_.emplace(flags_.file, seconds_between_, std::move(head), backend);
+    return state;
+}
+
+void RenderCheckpoint::observe(const RenderState& state)
+{
+    if (writer_) writer_->observe(state);
+}
+
+std::string RenderCheckpoint::finish(const Film& film, const Schedule& schedule)
+{
+    try {
+        if (writer_) writer_->finish(film, schedule);
+        return "";
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+}
+
+}  // namespace diptych

@@ -1,0 +1,61 @@
+// --checkpoint, --every, --restart and --range of `diptych render`.
+#pragma once
+
+#include "host/render/checkpoint_writer.hpp"
+
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace diptych {
+
+struct CheckpointFlags {
+    std::string file;
+    std::string every = "10s";
+    std::string range;
+    bool is_restart = false;
+};
+
+void add_checkpoint_flags(CLI::App& app, CheckpointFlags& flags);
+
+// "10s", "2m", "1.5h", "30": seconds. Throws std::runtime_error that names the flag.
+double parse_seconds(const std::string& flag, const std::string& text);
+
+// "128..512" of a plan of `samples`: first and end. Both are whole quanta, or the plan's end.
+// Empty: the whole plan. Throws std::runtime_error.
+std::pair<int, int> parse_range(const std::string& text, int samples);
+
+// A render's checkpoint file, locked while this lives; nothing when the flags name none.
+class RenderCheckpoint {
+public:
+    // Reads what exists. Throws std::runtime_error when it is not one to go on from, when its
+    // folder cannot be written, or when another process writes it.
+    RenderCheckpoint(const CheckpointFlags& flags, int first, int end);
+
+    // scene: before upload. The state to go on from, if there is one.
+    std::optional<RenderState> begin(const SceneData& scene, const std::string& backend_name,
+                                     const Backend& backend, bool is_quiet);
+
+    void observe(const RenderState& state);
+
+    // Writes the last state. What went wrong, for the end of the program; empty: nothing.
+    std::string finish(const Film& film, const Schedule& schedule);
+
+    double earlier_seconds() const { return earlier_seconds_; }
+    const CheckpointWriter* writer() const { return writer_ ? &*writer_ : nullptr; }
+
+private:
+    CheckpointFlags flags_;
+    double seconds_between_;
+    int first_;
+    int end_;
+    double earlier_seconds_ = 0;
+    std::optional<FileLock> lock_;
+    std::optional<Checkpoint> found_;
+    std::optional<CheckpointWriter> writer_;
+};
+
+}  // namespace diptych

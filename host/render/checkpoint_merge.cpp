@@ -1,0 +1,169 @@
+#include "host/render/checkpoint_merge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace diptych {
+namespace {
+
+template<class Value>
+void add_to(std::vector<Value>& sums, const std::vector<Value>& more)
+{
+    for (size_t k = 0; k < sums.size(); ++k) sums[k] += more[k];
+}
+
+std::string samples_text(int first, int end) { return fmt::format("samples {}..{}", first, end); }
+
+void refuse_overlap(const Slice& a, const std::string& name_a, const Slice& b,
+                    const std::string& name_b)
+{
+    const int first = std::max(a.first, b.first);
+    const int end = std::min(done_end(a), done_end(b));
+    if (first < end)
+        throw std::runtime_error(fmt::format("{} and {}: both hold {}; merge slices that are apart",
+                                             name_a, name_b, samples_text(first, end)));
+}
+
+// Complete and uniform: all blocks have the same samples.
+bool is_uniform(const Slice& slice)
+{
+    const int whole = int(quanta_of(slice.first, slice.end).size());
+    return std::all_of(slice.schedule.blocks.begin(), slice.schedule.blocks.end(),
+                       [&](const BlockState& block) { return block.quanta >= whole; });
+}
+
+void join_neighbours(std::vector<Slice>& slices)
+{
+    std::sort(slices.begin(), slices.end(),
+              [](const Slice& a, const Slice& b) { return a.first < b.first; });
+    for (size_t k = 0; k + 1 < slices.size();) {
+        Slice &a = slices[k], &b = slices[k + 1];
+        if (a.end != b.first || a.end % QUANTUM != 0 || !is_uniform(a)) {
+            ++k;
+            continue;
+        }
+        const int quanta = int(quanta_of(a.first, a.end).size());
+        for (size_t block = 0; block < a.schedule.blocks.size(); ++block) {
+            a.schedule.blocks[block] = b.schedule.blocks.at(block);
+            a.schedule.blocks[block].quanta += quanta;
+            a.schedule.blocks[block].target += quanta;
+        }
+        a.end = b.end;
+        slices.erase(slices.begin() + std::ptrdiff_t(k) + 1);
+    }
+}
+
+// The first is the one that comes first in the order of samples.
+Faults merged_faults(const Faults& a, const Faults& b)
+{
+    Faults faults = a.count == 0 || (b.count > 0 && b.first_sample < a.first_sample) ? b : a;
+    faults.count = a.count + b.count;
+    return faults;
+}
+
+// Same size.
+void add_film(Film& film, const Film& more)
+{
+    const int batches = std::max(film.data().batches, more.data().batches);
+    film = with_batches(std::move(film), batches);
+    const Film wide = with_batches(more, batches);
+    // The list of members is whole, or it does not compile.
+    auto& [window, batch_number, radiance, batch_samples, alpha, albedo, normal, distance, object,
+           material, faults] = film.data();
+    const FilmData& data = wide.data();
+    add_to(radiance, data.radiance);
+    add_to(batch_samples, data.batch_samples);
+    add_to(alpha, data.alpha);
+    add_to(albedo, data.albedo);
+    add_to(normal, data.normal);
+    add_to(distance, data.distance);
+    for (size_t p = 0; p < object.size(); ++p) {
+        object[p] = std::max(object[p], data.object[p]);  // -1 in all slices but the first
+        material[p] = std::max(material[p], data.material[p]);
+    }
+}
+
+}  // namespace
+
+Film with_batches(Film film, int batches)
+{
+    const FilmData& from = film.data();
+    if (from.batches >= batches) return film;
+    Film wide(film.width(), film.height(), from.window, batches);
+    FilmData& to = wide.data();
+    const size_t few = size_t(from.batches), many = size_t(batches);
+    for (size_t p = 0; p < from.window.pixels(); ++p)
+        for (size_t b = 0; b < few; ++b) {
+            to.batch_samples[p * many + b] = from.batch_samples[p * few + b];
+            for (size_t c = 0; c < 3; ++c)
+                to.radiance[(p * many + b) * 3 + c] = from.radiance[(p * few + b) * 3 + c];
+        }
+    FilmData rest = std::move(film.data());
+    rest.radiance = std::move(to.radiance);
+    rest.batch_samples = std::move(to.batch_samples);
+    rest.batches = batches;
+    to = std::move(rest);
+    return wide;
+}
+
+void expect_mergeable(const CheckpointHead& a, const std::string& name_a, const CheckpointHead& b,
+                      const std::string& name_b)
+{
+    const std::string difference = difference_between(a.subject, b.subject);
+    if (!difference.empty())
+        throw std::runtime_error(fmt::format("{} and {}: differ in {}; merge slices of one picture",
+                                             name_a, name_b, difference));
+    if (a.block_shift != b.block_shift)
+        throw std::runtime_error(fmt::format("{} and {}: differ in the size of blocks; merge "
+                                             "slices that were rendered with the same settings",
+                                             name_a, name_b));
+    for (const Slice& one : a.slices)
+        for (const Slice& other : b.slices) refuse_overlap(one, name_a, other, name_b);
+}
+
+void add_checkpoint(Checkpoint& all, const Checkpoint& more)
+{
+    const Faults faults = merged_faults(all.film.faults(), more.film.faults());
+    add_film(all.film, more.film);
+    all.film.data().faults = faults;
+    CheckpointHead& head = all.head;
+    head.slices.insert(head.slices.end(), more.head.slices.begin(), more.head.slices.end());
+    join_neighbours(head.slices);
+    for (const std::string& backend : more.head.backends)
+        if (std::count(head.backends.begin(), head.backends.end(), backend) == 0)
+            head.backends.push_back(backend);
+    std::sort(head.backends.begin(), head.backends.end());
+    head.seconds += more.head.seconds;
+    head.rays += more.head.rays;
+    head.paths += more.head.paths;
+}
+
+RenderState continued(Checkpoint checkpoint, const std::string& name, int first, int end)
+{
+    const auto refuse = [&](const std::string& what) {
+        throw std::runtime_error(name + ": " + what + ", or begin anew with --restart");
+    };
+    if (checkpoint.head.slices.size() != 1)
+        refuse("holds samples that are apart, merged; name another file");
+    Slice slice = std::move(checkpoint.head.slices[0]);
+    if (slice.first != first)
+        refuse(fmt::format("holds {}, not from {} on; ask for the same --range",
+                           samples_text(slice.first, slice.end), first));
+    const int done = done_end(slice);
+    if (done > end)
+        refuse(fmt::format("holds {}, more than up to {}; ask for at least as many",
+                           samples_text(first, done), end));
+    if (end != slice.end && done % QUANTUM != 0)
+        refuse(fmt::format("holds {}, which ends within a group of {} samples; name another file",
+                           samples_text(first, done), QUANTUM));
+    for (BlockState& block : slice.schedule.blocks) {
+        if (end == slice.end) continue;
+        block.is_done = false;
+        block.target = std::min(block.target, int(quanta_of(first, end).size()));
+    }
+    return {with_batches(std::move(checkpoint.film), batches_of(end)), std::move(slice.schedule)};
+}
+
+}  // namespace diptych

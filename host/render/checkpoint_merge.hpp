@@ -1,0 +1,24 @@
+// Putting slices of one picture together.
+#pragma once
+
+#include "host/render/checkpoint.hpp"
+
+namespace diptych {
+
+// A film with that many batches, at least those it has; its sums are the same.
+Film with_batches(Film film, int batches);
+
+// Throws std::runtime_error (name and name: what; what to do) for another scene, camera, size, seed
+// or other settings, and when both hold the same samples.
+void expect_mergeable(const CheckpointHead& a, const std::string& name_a, const CheckpointHead& b,
+                      const std::string& name_b);
+
+// Adds what is mergeable, in any order. Complete slices that meet become one.
+void add_checkpoint(Checkpoint& all, const Checkpoint& more);
+
+// What is left of a checkpoint to go on with as samples [first, end): at the end of its samples or
+// within. Throws std::runtime_error (name: what; what to do) when its samples begin elsewhere, are
+// more, or do not end with a whole quantum before `end`.
+RenderState continued(Checkpoint checkpoint, const std::string& name, int first, int end);
+
+}  // namespace diptych
