@@ -236,7 +236,9 @@ int run_render_command(const RenderCommand& command)
     if (audited) print_audit(*audited, aim);
     if (!run.json.empty()) {
         const std::string report =
-            json_report(run, scene, *backend, result, picture, place, error, audited) + "\n";
+            json_report(run, scene, *backend, result, picture, place, error, audited,
+                        checkpoint.writer()) +
+            "\n";
         if (run.json == "-")
             std::cout << report << std::flush;
         else

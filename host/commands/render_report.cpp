@@ -142,7 +142,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
                         const Backend& backend, const RenderResult& result,
                         const image::Picture& picture, const std::optional<FaultPlace>& fault,
                         const std::optional<ErrorSummary>& error,
-                        const std::optional<Audit>& audited)
+                        const std::optional<Audit>& audited, const CheckpointWriter* checkpoint)
 {
     const Statistics& statistics = result.statistics;
     json layers = json::object();
@@ -195,6 +195,9 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
         report["first_dropped"] = {{"x", fault->x},           {"y", fault->y},
                                    {"sample", fault->sample}, {"bounce", fault->bounce},
                                    {"stage", fault->stage},   {"buffer", fault->buffer}};
+    if (checkpoint)
+        report["checkpoint"] = {{"written", checkpoint->written()},
+                                {"waited", checkpoint->seconds_spent()}};
     return report.dump();
 }
 

@@ -39,7 +39,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
                         const Backend& backend, const RenderResult& result,
                         const image::Picture& picture, const std::optional<FaultPlace>& fault,
                         const std::optional<ErrorSummary>& error,
-                        const std::optional<Audit>& audited);
+                        const std::optional<Audit>& audited, const CheckpointWriter* checkpoint);
 
 void add_metadata(image::Picture& picture, const RenderCommand& command, const SceneData& scene,
                   const Backend& backend, const RenderResult& result);

@@ -71,12 +71,9 @@ Settings settings_from(const std::string& text)
 
 json json_of(const Slice& slice)
 {
-    return {{"first", slice.first},
-            {"end", slice.end},
-            {"round", slice.schedule.round},
-            {"level", slice.schedule.level},
-            {"pilot", slice.schedule.pilot},
-            {"blocks", slice.schedule.blocks.size()}};
+    return {{"first", slice.first},          {"end", slice.end},
+            {"round", slice.schedule.round}, {"level", slice.schedule.level},
+            {"pilot", slice.schedule.pilot}, {"blocks", slice.schedule.blocks.size()}};
 }
 
 Slice slice_from(const json& in)

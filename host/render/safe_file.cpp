@@ -55,8 +55,7 @@ std::string temporary_beside(const std::string& path)
 
 }  // namespace
 
-SafeFile::SafeFile(std::string path)
-    : path_(std::move(path)), temporary_(temporary_beside(path_))
+SafeFile::SafeFile(std::string path) : path_(std::move(path)), temporary_(temporary_beside(path_))
 {
     std::error_code ignored;
     if (fs::is_directory(path_, ignored)) fail(path_, "cannot be written", EISDIR, "name a file");
