@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <stdexcept>
@@ -20,6 +21,27 @@ namespace {
 std::string joined(const std::vector<std::string>& names)
 {
     return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void go_on_from(const CheckpointHead& old, CheckpointHead& head)
+{
+    for (const std::string& backend : old.backends)
+        if (std::count(head.backends.begin(), head.backends.end(), backend) == 0)
+            head.backends.push_back(backend);
+    std::sort(head.backends.begin(), head.backends.end());
+    head.seconds = old.seconds;
+    head.rays = old.rays;
+    head.paths = old.paths;
+}
+
+void tell_beginning(const std::string& file, const CheckpointHead& old, const std::string& backend)
+{
+    if (old.backends != std::vector{backend})
+        fmt::print(stderr, "notice: {} was begun on {}: the picture will be by both\n", file,
+                   joined(old.backends));
+    for (const Slice& slice : old.slices)
+        fmt::print(stderr, "going on from {}: {:.0f} % of samples {}..{}, {:.1f} s so far\n", file,
+                   100 * fraction_done(old), slice.first, slice.end, old.seconds);
 }
 
 }  // namespace
@@ -81,9 +103,8 @@ std::pair<int, int> parse_range(const std::string& text, int samples)
     return {first, end};
 }
 
-RenderCheckpoint::RenderCheckpoint(const CheckpointFlags& flags, int first, int end)
-    : flags_(flags), seconds_between_(parse_seconds("--every", flags.every)), first_(first),
-      end_(end)
+RenderCheckpoint::RenderCheckpoint(const CheckpointFlags& flags)
+    : flags_(flags), seconds_between_(parse_seconds("--every", flags.every))
 {
     if (flags_.file.empty() && flags_.is_restart)
         throw std::runtime_error("--restart: there is no checkpoint to begin anew; name it with "
@@ -99,38 +120,31 @@ RenderCheckpoint::RenderCheckpoint(const CheckpointFlags& flags, int first, int 
 }
 
 std::optional<RenderState> RenderCheckpoint::begin(const SceneData& scene,
+                                                   const RenderOptions& options,
                                                    const std::string& backend_name,
                                                    const Backend& backend, bool is_quiet)
 {
     if (flags_.file.empty()) return std::nullopt;
+    const Settings& settings = scene.settings.at(0);
     CheckpointHead head;
     head.subject = checkpoint_subject(scene, "diptych " DIPTYCH_VERSION);
     head.backends = {backend_name};
-    head.slices = {{first_, end_, {}}};
+    head.block_shift = grid_of(settings, options).shift;
+    head.slices = {slice_of(options)};
     std::optional<RenderState> state;
     if (found_) {
         const CheckpointHead& old = found_->head;
         const std::string difference = difference_between(old.subject, head.subject);
         if (!difference.empty())
-            refuse(flags_.file, "is of another picture",
-                   fmt::format("it and this render differ in {}; name another file, or begin anew "
-                               "with --restart",
-                               difference));
-        head.backends = old.backends;
-        if (std::count(head.backends.begin(), head.backends.end(), backend_name) == 0)
-            head.backends.push_back(backend_name);
-        head.seconds = earlier_seconds_ = old.seconds;
-        head.rays = old.rays;
-        head.paths = old.paths;
-        if (!is_quiet && old.backends != std::vector{backend_name})
-            fmt::print(stderr, "notice: {} was begun on {}: the picture will be by both\n",
-                       flags_.file, joined(old.backends));
-        if (!is_quiet && !old.slices.empty())
-            fmt::print(stderr, "going on from {}: {:.0f} % of samples {}..{}, {:.1f} s so far\n",
-                       flags_.file, 100 * fraction_done(old), old.slices[0].first,
-                       old.slices[0].end, old.seconds);
-        state = continued(std::move(*found_), flags_.file, first_, end_);
+            throw std::runtime_error(
+                fmt::format("{}: is of another picture: it and this render differ in {}; name "
+                            "another file, or begin anew with --restart",
+                            flags_.file, difference));
+        go_on_from(old, head);
+        if (!is_quiet) tell_beginning(flags_.file, old, backend_name);
+        state = continued(std::move(*found_), flags_.file, settings, options);
         found_.reset();
+        earlier_seconds_ = head.seconds;
     }
     writer_.emplace(flags_.file, seconds_between_, std::move(head), backend);
     return state;

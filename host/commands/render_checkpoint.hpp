@@ -33,11 +33,12 @@ class RenderCheckpoint {
 public:
     // Reads what exists. Throws std::runtime_error when it is not one to go on from, when its
     // folder cannot be written, or when another process writes it.
-    RenderCheckpoint(const CheckpointFlags& flags, int first, int end);
+    explicit RenderCheckpoint(const CheckpointFlags& flags);
 
     // scene: before upload. The state to go on from, if there is one.
-    std::optional<RenderState> begin(const SceneData& scene, const std::string& backend_name,
-                                     const Backend& backend, bool is_quiet);
+    std::optional<RenderState> begin(const SceneData& scene, const RenderOptions& options,
+                                     const std::string& backend_name, const Backend& backend,
+                                     bool is_quiet);
 
     void observe(const RenderState& state);
 
@@ -50,8 +51,6 @@ public:
 private:
     CheckpointFlags flags_;
     double seconds_between_;
-    int first_;
-    int end_;
     double earlier_seconds_ = 0;
     std::optional<FileLock> lock_;
     std::optional<Checkpoint> found_;

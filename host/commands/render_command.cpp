@@ -194,13 +194,13 @@ int run_render_command(const RenderCommand& command)
     options.stop = &is_interrupted;
     if (options.pixel && !run.checkpoint.file.empty())
         throw std::runtime_error("--checkpoint: not for a single pixel; leave out --pixel");
-    RenderCheckpoint checkpoint(run.checkpoint, options.first_sample, options.samples);
+    RenderCheckpoint checkpoint(run.checkpoint);
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
     SceneData scene = load_from_flags(run.scene);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
     std::optional<RenderState> start =
-        checkpoint.begin(scene, run.device.backend, *backend, run.is_quiet);
+        checkpoint.begin(scene, options, run.device.backend, *backend, run.is_quiet);
     backend->upload(scene);
     options.observe = [&](const RenderState& state) { checkpoint.observe(state); };
 

@@ -78,7 +78,12 @@ json json_of(const Slice& slice)
 
 Slice slice_from(const json& in)
 {
-    Slice slice{in.at("first"), in.at("end"), {}};
+    Slice slice;
+    slice.first = in.at("first");
+    slice.end = in.at("end");
+    slice.error = in.at("error");
+    slice.is_timed = in.at("timed");
+    slice.is_unbiased = in.at("unbiased");
     slice.schedule.round = in.at("round");
     slice.schedule.level = in.at("level");
     slice.schedule.pilot = in.at("pilot");
@@ -270,9 +275,24 @@ private:
 
 }  // namespace
 
+Slice slice_of(const RenderOptions& options)
+{
+    return {options.first_sample, options.samples,        {},
+            options.error,        options.time_limit > 0, options.is_unbiased};
+}
+
+std::vector<Quantum> plan_of(const Slice& slice)
+{
+    RenderOptions options;
+    options.first_sample = slice.first;
+    options.samples = slice.end;
+    options.time_limit = slice.is_timed ? 1 : 0;
+    return plan_of(options);
+}
+
 int done_end(const Slice& slice)
 {
-    const std::vector<Quantum> plan = quanta_of(slice.first, slice.end);
+    const std::vector<Quantum> plan = plan_of(slice);
     int quanta = 0;
     for (const BlockState& block : slice.schedule.blocks) quanta = std::max(quanta, block.quanta);
     if (quanta == 0) return slice.first;
@@ -282,7 +302,7 @@ int done_end(const Slice& slice)
 
 bool is_complete(const Slice& slice)
 {
-    const int whole = int(quanta_of(slice.first, slice.end).size());
+    const int whole = int(plan_of(slice).size());
     return std::all_of(
         slice.schedule.blocks.begin(), slice.schedule.blocks.end(),
         [&](const BlockState& block) { return block.quanta >= whole || block.is_done; });
@@ -293,7 +313,7 @@ double fraction_done(const CheckpointHead& head)
 {
     double done = 0, all = 0;
     for (const Slice& slice : head.slices) {
-        const int whole = int(quanta_of(slice.first, slice.end).size());
+        const int whole = int(plan_of(slice).size());
         for (const BlockState& block : slice.schedule.blocks) {
             done += block.quanta;
             all += block.is_done ? block.quanta : whole;

@@ -29,12 +29,20 @@ CheckpointSubject checkpoint_subject(const SceneData& scene, const std::string& 
 // In what two subjects differ, in words ("seed (1 and 2), camera"); empty when in nothing.
 std::string difference_between(const CheckpointSubject& a, const CheckpointSubject& b);
 
-// Samples [first, end) of a picture's plan and how far its blocks have come.
+// Samples [first, end) of a picture's plan, how far its blocks have come, and the targets that they
+// are rendered to (RenderOptions).
 struct Slice {
     int first = 0;
     int end = 0;
-    Schedule schedule;
+    Schedule schedule{};
+    double error = 0;
+    bool is_timed = false;
+    bool is_unbiased = false;
 };
+
+// What a render with these options will have done: nothing yet.
+Slice slice_of(const RenderOptions& options);
+std::vector<Quantum> plan_of(const Slice& slice);
 
 // All of a checkpoint but the sums.
 struct CheckpointHead {

@@ -29,9 +29,16 @@ void refuse_overlap(const Slice& a, const std::string& name_a, const Slice& b,
 // Complete and uniform: all blocks have the same samples.
 bool is_uniform(const Slice& slice)
 {
-    const int whole = int(quanta_of(slice.first, slice.end).size());
+    const int whole = int(plan_of(slice).size());
     return std::all_of(slice.schedule.blocks.begin(), slice.schedule.blocks.end(),
                        [&](const BlockState& block) { return block.quanta >= whole; });
+}
+
+// As one they are what a single render would be.
+bool may_join(const Slice& a, const Slice& b)
+{
+    return a.end % QUANTUM == 0 && is_uniform(a) && !a.is_timed && !b.is_timed &&
+           a.schedule.pilot == 0 && b.schedule.pilot == 0;
 }
 
 void join_neighbours(std::vector<Slice>& slices)
@@ -40,17 +47,18 @@ void join_neighbours(std::vector<Slice>& slices)
               [](const Slice& a, const Slice& b) { return a.first < b.first; });
     for (size_t k = 0; k + 1 < slices.size();) {
         Slice &a = slices[k], &b = slices[k + 1];
-        if (a.end != b.first || a.end % QUANTUM != 0 || !is_uniform(a)) {
+        if (a.end != b.first || !may_join(a, b)) {
             ++k;
             continue;
         }
-        const int quanta = int(quanta_of(a.first, a.end).size());
+        const int quanta = int(plan_of(a).size());
         for (size_t block = 0; block < a.schedule.blocks.size(); ++block) {
             a.schedule.blocks[block] = b.schedule.blocks.at(block);
             a.schedule.blocks[block].quanta += quanta;
             a.schedule.blocks[block].target += quanta;
         }
         a.end = b.end;
+        a.error = b.error;
         slices.erase(slices.begin() + std::ptrdiff_t(k) + 1);
     }
 }
@@ -140,7 +148,8 @@ void add_checkpoint(Checkpoint& all, const Checkpoint& more)
     head.paths += more.head.paths;
 }
 
-RenderState continued(Checkpoint checkpoint, const std::string& name, int first, int end)
+RenderState continued(Checkpoint checkpoint, const std::string& name, const Settings& settings,
+                      const RenderOptions& options)
 {
     const auto refuse = [&](const std::string& what) {
         throw std::runtime_error(name + ": " + what + ", or begin anew with --restart");
@@ -148,22 +157,29 @@ RenderState continued(Checkpoint checkpoint, const std::string& name, int first,
     if (checkpoint.head.slices.size() != 1)
         refuse("holds samples that are apart, merged; name another file");
     Slice slice = std::move(checkpoint.head.slices[0]);
-    if (slice.first != first)
-        refuse(fmt::format("holds {}, not from {} on; ask for the same --range",
-                           samples_text(slice.first, slice.end), first));
+    const Slice wanted = slice_of(options);
     const int done = done_end(slice);
-    if (done > end)
+    if (slice.first != wanted.first)
+        refuse(fmt::format("holds {}, not from {} on; ask for the same --range",
+                           samples_text(slice.first, slice.end), wanted.first));
+    if (done > wanted.end)
         refuse(fmt::format("holds {}, more than up to {}; ask for at least as many",
-                           samples_text(first, done), end));
-    if (end != slice.end && done % QUANTUM != 0)
+                           samples_text(wanted.first, done), wanted.end));
+    if (wanted.end != slice.end && done % QUANTUM != 0)
         refuse(fmt::format("holds {}, which ends within a group of {} samples; name another file",
-                           samples_text(first, done), QUANTUM));
-    for (BlockState& block : slice.schedule.blocks) {
-        if (end == slice.end) continue;
-        block.is_done = false;
-        block.target = std::min(block.target, int(quanta_of(first, end).size()));
-    }
-    return {with_batches(std::move(checkpoint.film), batches_of(end)), std::move(slice.schedule)};
+                           samples_text(wanted.first, done), QUANTUM));
+    if (checkpoint.head.block_shift != grid_of(settings, options).shift ||
+        slice.is_timed != wanted.is_timed || slice.is_unbiased != wanted.is_unbiased)
+        refuse("was rendered to another kind of target (--samples, --error, --time, --unbiased); "
+               "ask for the same kind");
+    const int whole = int(plan_of(wanted).size());
+    if (wanted.end != slice.end || wanted.error != slice.error)
+        for (BlockState& block : slice.schedule.blocks) {
+            block.is_done = false;
+            block.target = std::min(block.target, whole);
+        }
+    const int batches = is_adaptive(options) ? batch_count : batches_of(wanted.end);
+    return {with_batches(std::move(checkpoint.film), batches), std::move(slice.schedule)};
 }
 
 }  // namespace diptych

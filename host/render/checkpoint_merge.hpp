@@ -16,9 +16,10 @@ void expect_mergeable(const CheckpointHead& a, const std::string& name_a, const 
 // Adds what is mergeable, in any order. Complete slices that meet become one.
 void add_checkpoint(Checkpoint& all, const Checkpoint& more);
 
-// What is left of a checkpoint to go on with as samples [first, end): at the end of its samples or
+// The state to go on from with a render of these options: at the end of the checkpoint's samples or
 // within. Throws std::runtime_error (name: what; what to do) when its samples begin elsewhere, are
-// more, or do not end with a whole quantum before `end`.
-RenderState continued(Checkpoint checkpoint, const std::string& name, int first, int end);
+// more, do not end with a whole quantum before the render's end, or were taken by another plan.
+RenderState continued(Checkpoint checkpoint, const std::string& name, const Settings& settings,
+                      const RenderOptions& options);
 
 }  // namespace diptych

@@ -17,9 +17,8 @@ TEST_P(Checkpoints, GoOnWhereverTheyStopped)
         SCOPED_TRACE(dispatches);
         Checkpoint part = rendered({GetParam(), 0, samples, dispatches});
         ASSERT_FALSE(is_complete(part.head.slices[0]));
-        part =
-            rendered({GetParam(), 0, samples, 3}, continued(std::move(part), "part", 0, samples));
-        part = rendered({GetParam(), 0, samples}, continued(std::move(part), "part", 0, samples));
+        part = rendered({GetParam(), 0, samples, 3}, gone_on(std::move(part), 0, samples));
+        part = rendered({GetParam(), 0, samples}, gone_on(std::move(part), 0, samples));
         EXPECT_TRUE(is_complete(part.head.slices[0]));
         expect_same_picture(part.film, whole.film);
     }
@@ -31,10 +30,10 @@ TEST_P(Checkpoints, GoOnToMoreSamples)
     for (const int fewer : {16, 48, 128, 192}) {
         SCOPED_TRACE(fewer);
         Checkpoint part = rendered({GetParam(), 0, fewer});
-        part = rendered({GetParam(), 0, 200}, continued(std::move(part), "part", 0, 200));
+        part = rendered({GetParam(), 0, 200}, gone_on(std::move(part), 0, 200));
         expect_same_picture(part.film, whole.film);
         Checkpoint stopped = rendered({GetParam(), 0, fewer, 5});
-        stopped = rendered({GetParam(), 0, 200}, continued(std::move(stopped), "part", 0, 200));
+        stopped = rendered({GetParam(), 0, 200}, gone_on(std::move(stopped), 0, 200));
         expect_same_picture(stopped.film, whole.film);
     }
 }
@@ -58,6 +57,46 @@ TEST_P(Checkpoints, MergeToTheBitsOfOneRender)
         EXPECT_TRUE(is_complete(all.head.slices[0]));
         expect_same_picture(all.film, whole.film);
         std::shuffle(order.begin(), order.end(), std::minstd_rand(unsigned(turn + 1)));
+    }
+}
+
+// Blocks with samples of their own number, and decisions on the way.
+TEST_P(Checkpoints, GoOnTowardsAnErrorTarget)
+{
+    const int width = 64, height = 48;
+    SceneData scene = laws::busy_scene(width, height);
+    BackendOptions device;
+    device.memory_bytes = 1u << 20;
+    const std::unique_ptr<Backend> backend = make_backend(GetParam(), device);
+    CheckpointHead head;
+    head.subject = checkpoint_subject(scene, "test 1");
+    backend->upload(scene);
+    RenderOptions options;
+    options.samples = 512;
+    options.error = 2;
+    const RenderResult whole = render(*backend, scene, options);
+    const std::vector<BlockState>& blocks = whole.schedule.blocks;
+    EXPECT_TRUE(std::any_of(blocks.begin(), blocks.end(), [&](const BlockState& block) {
+        return block.quanta != blocks[0].quanta;
+    })) << "all blocks have the same samples";
+
+    std::optional<RenderState> state;
+    for (int pauses = 0;; ++pauses) {
+        std::atomic<bool> stop = false;
+        int dispatches = 0;
+        RenderOptions part = options;
+        part.stop = &stop;
+        part.observe = [&](const RenderState&) { stop = ++dispatches >= 7; };
+        RenderResult result = render(*backend, scene, part, std::move(state));
+        if (result.is_complete) {
+            EXPECT_GT(pauses, 2);
+            expect_same_picture(result.film, whole.film);
+            break;
+        }
+        head.block_shift = grid_of(scene.settings[0], options).shift;
+        head.slices = {slice_of(options)};
+        head.slices[0].schedule = std::move(result.schedule);
+        state = continued({head, std::move(result.film)}, "part", scene.settings[0], options);
     }
 }
 
@@ -92,10 +131,10 @@ TEST(Merging, KeepsWhatIsApartAndJoinsItLater)
     Checkpoint all = rendered({.first = 0, .end = 64});
     add_checkpoint(all, rendered({.first = 96, .end = 128}));
     ASSERT_EQ(all.head.slices.size(), 2u);
-    EXPECT_NE(error_of([&] { continued(all, "all", 0, 128); }).find("apart"), std::string::npos);
+    EXPECT_NE(error_of([&] { gone_on(all, 0, 128); }).find("apart"), std::string::npos);
     add_checkpoint(all, middle);
     ASSERT_EQ(all.head.slices.size(), 1u);
-    const Checkpoint more = rendered({.end = 160}, continued(std::move(all), "all", 0, 160));
+    const Checkpoint more = rendered({.end = 160}, gone_on(std::move(all), 0, 160));
     expect_same_picture(more.film, rendered({.end = 160}).film);
 }
 
@@ -155,7 +194,7 @@ TEST(Continuing, RefusesWhatDoesNotFit)
 {
     const Checkpoint some = rendered({.end = 40});
     const auto refusal = [&](int first, int end) {
-        return error_of([&] { continued(some, "some", first, end); });
+        return error_of([&] { gone_on(some, first, end); });
     };
     EXPECT_EQ(refusal(0, 40), "");
     EXPECT_NE(refusal(0, 32).find("more than up to 32"), std::string::npos);

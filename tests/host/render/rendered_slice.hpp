@@ -41,8 +41,19 @@ inline Checkpoint rendered(const Wanted& wanted, std::optional<RenderState> star
     options.stop = &stop;
     options.observe = [&](const RenderState&) { stop = ++dispatches >= wanted.dispatches; };
     RenderResult result = render(*backend, scene, options, std::move(start));
-    head.slices = {{wanted.first, wanted.end, std::move(result.schedule)}};
+    head.slices = {slice_of(options)};
+    head.slices[0].schedule = std::move(result.schedule);
     return {std::move(head), std::move(result.film)};
+}
+
+// A render of busy_scene goes on from it.
+inline RenderState gone_on(Checkpoint checkpoint, int first, int end)
+{
+    RenderOptions options;
+    options.first_sample = first;
+    options.samples = end;
+    const Settings settings = checkpoint.head.subject.settings;
+    return continued(std::move(checkpoint), "part", settings, options);
 }
 
 inline void write(const std::string& path, const Checkpoint& checkpoint)
