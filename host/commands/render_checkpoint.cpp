@@ -1,5 +1,6 @@
 #include "host/commands/render_checkpoint.hpp"
 
+#include "host/commands/error_flags.hpp"
 #include "host/render/checkpoint_merge.hpp"
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 #include <charconv>
 #include <filesystem>
 #include <stdexcept>
+#include <tuple>
 
 namespace diptych {
 namespace {
@@ -44,45 +46,9 @@ void tell_beginning(const std::string& file, const CheckpointHead& old, const st
                    100 * fraction_done(old), slice.first, slice.end, old.seconds);
 }
 
-}  // namespace
-
-void add_checkpoint_flags(CLI::App& app, CheckpointFlags& flags)
-{
-    app.add_option("--checkpoint", flags.file,
-                   "Keep the render's state in this file, and go on from it where it exists: the "
-                   "picture is the one of a render that was never interrupted");
-    app.add_option("--every", flags.every,
-                   "Time between two writings of the checkpoint, as 10s, 5m, 1h; longer where "
-                   "writing would take more than 1 % of the time")
-        ->capture_default_str();
-    app.add_flag("--restart", flags.is_restart, "Begin anew, whatever the checkpoint holds");
-    app.add_option("--range", flags.range,
-                   "Render only samples A..B of each pixel, A to B - 1, of the --samples of the "
-                   "whole; diptych merge puts the checkpoints of such slices together");
-}
-
-double parse_seconds(const std::string& flag, const std::string& text)
-{
-    std::string_view number = text;
-    double unit = 1;
-    if (!number.empty()) {
-        const size_t k = std::string_view("smh").find(number.back());
-        if (k != std::string_view::npos) {
-            unit = k == 0 ? 1 : k == 1 ? 60 : 3600;
-            number.remove_suffix(1);
-        }
-    }
-    double value = 0;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-    if (error != std::errc{} || end != number.data() + number.size() || !(value > 0) ||
-        !(value * unit <= 1e8))
-        refuse(flag, text, "not a time; give seconds above 0, or 10s, 5m, 1.5h");
-    return value * unit;
-}
-
+// "128..512" of a plan of `samples`: first and end.
 std::pair<int, int> parse_range(const std::string& text, int samples)
 {
-    if (text.empty()) return {0, samples};
     const size_t dots = text.find("..");
     int first = 0, end = 0;
     const auto parse = [&](size_t from, size_t to, int& value) {
@@ -101,6 +67,32 @@ std::pair<int, int> parse_range(const std::string& text, int samples)
         refuse("--range", text,
                fmt::format("cuts a group of {0} samples; give multiples of {0}", QUANTUM));
     return {first, end};
+}
+
+}  // namespace
+
+void add_checkpoint_flags(CLI::App& app, CheckpointFlags& flags)
+{
+    app.add_option("--checkpoint", flags.file,
+                   "Keep the render's state in this file, and go on from it where it exists: the "
+                   "picture is the one of a render that was never interrupted");
+    app.add_option("--every", flags.every,
+                   "Time between two writings of the checkpoint, as 10s, 5m, 1h; longer where "
+                   "writing would take more than 1 % of the time")
+        ->capture_default_str();
+    app.add_flag("--restart", flags.is_restart, "Begin anew, whatever the checkpoint holds");
+    app.add_option("--range", flags.range,
+                   "Render only samples A..B of each pixel, A to B - 1, of the --samples of the "
+                   "whole; diptych merge puts the checkpoints of such slices together");
+}
+
+void set_range(const std::string& text, RenderOptions& options)
+{
+    if (text.empty()) return;
+    if (is_adaptive(options))
+        refuse("--range", text,
+               "slices have a number of samples; leave out --error and --time, and give --samples");
+    std::tie(options.first_sample, options.samples) = parse_range(text, options.samples);
 }
 
 RenderCheckpoint::RenderCheckpoint(const CheckpointFlags& flags)

@@ -21,12 +21,9 @@ struct CheckpointFlags {
 
 void add_checkpoint_flags(CLI::App& app, CheckpointFlags& flags);
 
-// "10s", "2m", "1.5h", "30": seconds. Throws std::runtime_error that names the flag.
-double parse_seconds(const std::string& flag, const std::string& text);
-
-// "128..512" of a plan of `samples`: first and end. Both are whole quanta, or the plan's end.
-// Empty: the whole plan. Throws std::runtime_error.
-std::pair<int, int> parse_range(const std::string& text, int samples);
+// "128..512" of the samples in options: sets the first and the end. Both are whole quanta, or the
+// plan's end. Empty: leaves the whole plan. Throws std::runtime_error.
+void set_range(const std::string& text, RenderOptions& options);
 
 // A render's checkpoint file, locked while this lives; nothing when the flags name none.
 class RenderCheckpoint {

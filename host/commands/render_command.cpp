@@ -187,10 +187,7 @@ int run_render_command(const RenderCommand& command)
                                              "samples, or --error or --time",
                                              standard_error_samples));
     std::optional<Refresher> refresher;
-    if (!run.refresh.empty()) {
-        refresher.emplace(run, options, write);
-        options.observe = [&](const RenderState& state) { refresher->look_at(state); };
-    }
+    if (!run.refresh.empty()) refresher.emplace(run, options, write);
     options.stop = &is_interrupted;
     if (options.pixel && !run.checkpoint.file.empty())
         throw std::runtime_error("--checkpoint: not for a single pixel; leave out --pixel");
@@ -202,7 +199,10 @@ int run_render_command(const RenderCommand& command)
     std::optional<RenderState> start =
         checkpoint.begin(scene, options, run.device.backend, *backend, run.is_quiet);
     backend->upload(scene);
-    options.observe = [&](const RenderState& state) { checkpoint.observe(state); };
+    options.observe = [&](const RenderState& state) {
+        checkpoint.observe(state);
+        if (refresher) refresher->look_at(state);
+    };
 
     ProgressBar bar;
     if (!run.is_quiet) options.progress = [&](const Progress& progress) { bar.show(progress); };
@@ -235,10 +235,9 @@ int run_render_command(const RenderCommand& command)
     if (!run.is_quiet && error) fmt::print(stderr, "{}\n", ending_text(result, options, *error));
     if (audited) print_audit(*audited, aim);
     if (!run.json.empty()) {
-        const std::string report =
-            json_report(run, scene, *backend, result, picture, place, error, audited,
-                        checkpoint.writer()) +
-            "\n";
+        const std::string report = json_report(run, scene, *backend, result, picture, place, error,
+                                               audited, checkpoint.writer()) +
+                                   "\n";
         if (run.json == "-")
             std::cout << report << std::flush;
         else
