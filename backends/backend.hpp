@@ -27,10 +27,12 @@ struct Dispatch {
 };
 
 // Sums over the samples of each work item, a vector per result row; float3 rows are three planes of
-// `results` entries. The double backend narrows on the way out.
+// `results` entries, those of textures as many as texture_result_planes says. The double backend
+// narrows on the way out.
 struct Results {
 #define RESULT_VECTOR(type, name) std::vector<PLANE(type)> name;
     RESULT_BUFFERS(RESULT_VECTOR)
+    TEXTURE_RESULT_BUFFERS(RESULT_VECTOR)
 #undef RESULT_VECTOR
 };
 

@@ -19,6 +19,7 @@ namespace {
 #define COUNT_ROW(...) +1
 constexpr int scene_rows = 0 SCENE_BUFFERS(COUNT_ROW);
 constexpr int result_rows = 0 RESULT_BUFFERS(COUNT_ROW);
+constexpr int texture_result_rows = 0 TEXTURE_RESULT_BUFFERS(COUNT_ROW);
 
 // Readable memory behind every pointer: a kernel may load from the start of a buffer that the scene
 // left empty.
@@ -92,6 +93,7 @@ private:
 
     std::vector<unsigned char> result_memory_;
     std::vector<void*> result_planes_;
+    std::vector<void*> texture_result_planes_;
     std::mutex chunks_mutex_;
     std::vector<std::unique_ptr<Chunk>> chunks_;
     double setup_seconds_ = 0;
@@ -103,6 +105,16 @@ int result_components(int row)
 #define COMPONENTS(type, name) (#type[0] == 'f' && #type[5] == '3') ? 3 : 1,
         RESULT_BUFFERS(COMPONENTS)};
     return components[row];
+}
+
+bool is_real_texture_result(int row)
+{
+    static constexpr bool is_real[] = {
+#define IS_REAL(type, name) #type[0] == 'f',
+        TEXTURE_RESULT_BUFFERS(IS_REAL)
+#undef IS_REAL
+    };
+    return is_real[row];
 }
 
 bool is_real_result(int row)
@@ -208,17 +220,25 @@ PathView CpuBackend::view_results(const Dispatch& dispatch)
     const int entries = dispatch.results();
     size_t bytes = 0;
     std::vector<size_t> offsets;
-    for (int row = 0; row < result_rows; ++row) {
+    const auto reserve = [&](bool is_real, int planes) {
         offsets.push_back(bytes);
-        const size_t element = is_real_result(row) ? size_t(kernels_.real_bytes) : 4;
-        bytes += element * size_t(result_components(row)) * size_t(entries);
+        const size_t element = is_real ? size_t(kernels_.real_bytes) : 4;
+        bytes += element * size_t(planes) * size_t(entries);
         bytes = (bytes + 63) & ~size_t(63);
-    }
+    };
+    for (int row = 0; row < result_rows; ++row)
+        reserve(is_real_result(row), result_components(row));
+    for (int row = 0; row < texture_result_rows; ++row)
+        reserve(is_real_texture_result(row), texture_result_planes(*scene_)[size_t(row)]);
     result_memory_.assign(bytes + 64, 0);
     auto* base =
         result_memory_.data() + (64 - reinterpret_cast<std::uintptr_t>(result_memory_.data()) % 64);
     result_planes_.clear();
-    for (const size_t offset : offsets) result_planes_.push_back(base + offset);
+    for (int row = 0; row < result_rows; ++row)
+        result_planes_.push_back(base + offsets[size_t(row)]);
+    texture_result_planes_.clear();
+    for (int row = 0; row < texture_result_rows; ++row)
+        texture_result_planes_.push_back(base + offsets[size_t(result_rows + row)]);
     int row = 0;
 #define SET_IDS(type, name)                                               \
     if (std::string_view(#name).ends_with("_id"))                         \
@@ -231,6 +251,7 @@ PathView CpuBackend::view_results(const Dispatch& dispatch)
     view.pixel_shift = dispatch.pixel_shift;
     view.items = dispatch.items.data();
     view.result_planes = result_planes_.data();
+    view.texture_result_planes = texture_result_planes_.data();
     return view;
 }
 
@@ -259,6 +280,15 @@ void CpuBackend::render(const Dispatch& dispatch, Results& results)
            is_real_result(row) && kernels_.real_bytes == 8);            \
     ++row;
     RESULT_BUFFERS(COPY_RESULT)
+#undef COPY_RESULT
+    row = 0;
+#define COPY_RESULT(type, name)                                                      \
+    narrow(results.name, texture_result_planes_[row],                                \
+           size_t(texture_result_planes(*scene_)[row]) * size_t(dispatch.results()), \
+           is_real_texture_result(row) && kernels_.real_bytes == 8);                 \
+    ++row;
+    TEXTURE_RESULT_BUFFERS(COPY_RESULT)
+#undef COPY_RESULT
 }
 
 std::unique_ptr<Chunk> CpuBackend::borrow_chunk()

@@ -75,6 +75,7 @@ private:
     unsigned effects_ = 0;
     std::vector<opencl::Buffer> scene_;
     DispatchMemory memory_;
+    std::vector<PlaneRow> texture_result_rows_;
     ProgramSet programs_;
     std::array<StageKernel, STAGE_COUNT> kernels_;
     opencl::Kernel compact_count_;
@@ -95,6 +96,7 @@ const int first_header = [] {
     PATH_BUFFERS(COUNT_ROW)
     RESULT_BUFFERS(COUNT_ROW)
     TEXTURE_BUFFERS(COUNT_ROW)
+    TEXTURE_RESULT_BUFFERS(COUNT_ROW)
 #undef COUNT_ROW
     return rows;
 }();
@@ -132,6 +134,7 @@ void OpenclBackend::upload(SceneData& scene)
     if (scene.bvh_nodes.empty()) build_bvh(scene);
     scene_ = upload_scene(context_, queue_, device_, scene);
     build_kernels(scene);
+    texture_result_rows_ = texture_result_rows(scene);
     memory_ = DispatchMemory(context_, scene, plan(scene).items, device_.group_size);
     for (int k = 0; k < STAGE_COUNT; ++k)
         if (programs_.programs[k] && k != STAGE_compact) bind_buffers(kernels_[k]);
@@ -158,8 +161,8 @@ void OpenclBackend::build_kernels(const SceneData& scene)
 void OpenclBackend::bind_buffers(StageKernel& stage)
 {
     int index = 0;
-    for (const auto* buffers :
-         {&scene_, &memory_.path_planes, &memory_.result_planes, &memory_.texture_planes})
+    for (const auto* buffers : {&scene_, &memory_.path_planes, &memory_.result_planes,
+                                &memory_.texture_planes, &memory_.texture_result_planes})
         for (const opencl::Buffer& buffer : *buffers) stage.kernel.set(index++, buffer);
     stage.kernel.set(argument(ITEMS), memory_.items);
     stage.kernel.set(argument(LIVE), memory_.live[0]);
@@ -184,12 +187,15 @@ void OpenclBackend::begin(const Dispatch& dispatch)
         kernel.set(argument(PIXEL_SHIFT), dispatch.pixel_shift);
     }
     // written, not filled: Oclgrind does not notice that fills initialise
-    const std::vector<PlaneRow>& rows = result_rows();
-    for (size_t r = 0; r < rows.size(); ++r) {
-        const int start = std::strstr(rows[r].name, "_id") ? -1 : 0;
-        const std::vector<int> plane(size_t(rows[r].components) * size_t(results_), start);
-        queue_.write(memory_.result_planes[r], plane.size() * sizeof plane[0], plane.data());
-    }
+    const auto start = [&](const PlaneRow& row, const opencl::Buffer& buffer) {
+        const int value = std::strstr(row.name, "_id") ? -1 : 0;
+        const std::vector<int> plane(size_t(row.components) * size_t(results_), value);
+        if (!plane.empty()) queue_.write(buffer, plane.size() * sizeof plane[0], plane.data());
+    };
+    for (size_t r = 0; r < result_rows().size(); ++r)
+        start(result_rows()[r], memory_.result_planes[r]);
+    for (size_t r = 0; r < texture_result_rows_.size(); ++r)
+        start(texture_result_rows_[r], memory_.texture_result_planes[r]);
     statistics_.paths += unsigned(paths_);
 }
 
@@ -269,13 +275,19 @@ void OpenclBackend::collect_times()
 
 void OpenclBackend::download(Results& results)
 {
-    size_t row = 0;
-    const auto read = [&](auto& to) {
-        to.resize(size_t(result_rows()[row].components) * size_t(results_));
-        queue_.read(memory_.result_planes[row++], to.size() * sizeof to[0], to.data());
+    const auto read = [&](auto& to, const PlaneRow& row, const opencl::Buffer& buffer) {
+        to.resize(size_t(row.components) * size_t(results_));
+        if (!to.empty()) queue_.read(buffer, to.size() * sizeof to[0], to.data());
     };
-#define READ_RESULT(type, name) read(results.name);
+    size_t row = 0;
+#define READ_RESULT(type, name) \
+    read(results.name, result_rows()[row], memory_.result_planes[row]), ++row;
     RESULT_BUFFERS(READ_RESULT)
+#undef READ_RESULT
+    row = 0;
+#define READ_RESULT(type, name) \
+    read(results.name, texture_result_rows_[row], memory_.texture_result_planes[row]), ++row;
+    TEXTURE_RESULT_BUFFERS(READ_RESULT)
 #undef READ_RESULT
 }
 

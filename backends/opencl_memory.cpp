@@ -21,18 +21,23 @@ size_t plane_bytes(const std::vector<PlaneRow>& rows)
     return bytes;
 }
 
-// How many planes each row of TEXTURE_BUFFERS has.
+#define NUMBERED_ROW(type, name) {#name, planes[row++], #type[0] == 'f'},
+
+// Rows of TEXTURE_BUFFERS, a component for each plane.
 std::vector<PlaneRow> texture_rows(const SceneData& scene)
 {
-    return {{"occlusion_result", scene.textures.occlusion_results, true},
-            {"texture_result", 4 * scene.textures.outputs, true}};
+    const auto planes = texture_planes(scene);
+    size_t row = 0;
+    return {TEXTURE_BUFFERS(NUMBERED_ROW)};
 }
 
 size_t item_bytes(const SceneData& scene)
 {
     const size_t lists = 3 * sizeof(int);  // live, twice, and at most one sum a path
     const size_t planes = plane_bytes(path_rows()) + plane_bytes(texture_rows(scene));
-    return paths_per_item * (planes + lists) + results_per_item * plane_bytes(result_rows()) +
+    return paths_per_item * (planes + lists) +
+           results_per_item *
+               (plane_bytes(result_rows()) + plane_bytes(texture_result_rows(scene))) +
            small_items * sizeof(WorkItem);
 }
 
@@ -89,6 +94,13 @@ const std::vector<PlaneRow>& result_rows()
     return rows;
 }
 
+std::vector<PlaneRow> texture_result_rows(const SceneData& scene)
+{
+    const auto planes = texture_result_planes(scene);
+    size_t row = 0;
+    return {TEXTURE_RESULT_BUFFERS(NUMBERED_ROW)};
+}
+
 std::vector<opencl::Buffer> upload_scene(const opencl::Context& context, opencl::Queue& queue,
                                          const DeviceInfo& device, const SceneData& scene)
 {
@@ -121,6 +133,7 @@ DispatchMemory::DispatchMemory(const opencl::Context& context, const SceneData& 
       path_planes(planes(context, path_rows(), paths)),
       result_planes(planes(context, result_rows(), results)),
       texture_planes(planes(context, texture_rows(scene), paths)),
+      texture_result_planes(planes(context, texture_result_rows(scene), results)),
       items(context.buffer(sizeof(WorkItem) * small_items * size_t(item_count), "items"))
 {
     for (opencl::Buffer& list : live) list = context.buffer(sizeof(int) * size_t(paths), "live");

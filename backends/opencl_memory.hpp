@@ -16,6 +16,8 @@ struct PlaneRow {
 };
 const std::vector<PlaneRow>& path_rows();
 const std::vector<PlaneRow>& result_rows();
+// Rows of TEXTURE_RESULT_BUFFERS, a component for each plane that the scene asks for.
+std::vector<PlaneRow> texture_result_rows(const SceneData& scene);
 
 // Buffers in the order of the rows, which is the order of the kernels' arguments.
 std::vector<opencl::Buffer> upload_scene(const opencl::Context& context, opencl::Queue& queue,
@@ -32,6 +34,7 @@ struct DispatchMemory {
     std::vector<opencl::Buffer> path_planes;
     std::vector<opencl::Buffer> result_planes;
     std::vector<opencl::Buffer> texture_planes;
+    std::vector<opencl::Buffer> texture_result_planes;
     opencl::Buffer items;
     opencl::Buffer live[2];  // lists of live paths: this bounce's and the next one's
     opencl::Buffer sums;     // one of each work-group of the compaction

@@ -8,6 +8,7 @@
 #include "common/buffers.h"
 #include "common/effects.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,16 @@ struct SceneData {
     std::vector<std::string> notices;  // what the loader skipped, replaced or assumed, a line each
     size_t degenerate_triangles = 0;   // dropped: zero area
 };
+
+// How many planes each row of TEXTURE_BUFFERS has, and of TEXTURE_RESULT_BUFFERS.
+inline std::array<int, 2> texture_planes(const SceneData& scene)
+{
+    return {scene.textures.occlusion_results, 4 * scene.textures.outputs};
+}
+inline std::array<int, 1> texture_result_planes(const SceneData& scene)
+{
+    const bool has_textures = (scene.effects & EFFECT_PROCEDURAL) != 0;
+    return {has_textures ? TEXTURE_FAULT_COUNT : 0};
+}
 
 }  // namespace diptych

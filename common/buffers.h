@@ -83,10 +83,21 @@
     X(float, occlusion_result) \
     X(float, texture_result)
 
+// What may be wrong with an evaluation of a texture; each is counted for its path's pixel.
+#define TEXTURE_FAULT_NOT_FINITE 0  // evaluations whose result was replaced
+#define TEXTURE_FAULT_BUDGET 1      // evaluations whose loops were cut short
+#define TEXTURE_FAULT_INDEX 2       // indexes that were clamped
+#define TEXTURE_FAULT_COUNT 3
+
+// Planes of result entries whose number the scene decides, none in most.
+//   texture_faults: of each TEXTURE_FAULT_*, how often it occurred
+#define TEXTURE_RESULT_BUFFERS(X) X(int, texture_faults)
+
 #define SCENE_FIELD(type, name) GLOBAL const STORED(type) * name;
 #define PATH_FIELD(type, name, life) GLOBAL PLANE(type) * name;
 #define RESULT_FIELD(type, name) GLOBAL PLANE(type) * name;
 #define TEXTURE_FIELD(type, name) GLOBAL PLANE(type) * name;
+#define TEXTURE_RESULT_FIELD(type, name) GLOBAL PLANE(type) * name;
 
 // The scene as a kernel sees it.
 typedef struct {
@@ -109,6 +120,7 @@ typedef struct {
     PATH_BUFFERS(PATH_FIELD)
     RESULT_BUFFERS(RESULT_FIELD)
     TEXTURE_BUFFERS(TEXTURE_FIELD)
+    TEXTURE_RESULT_BUFFERS(TEXTURE_RESULT_FIELD)
 } Paths;
 
 // get_NAME(paths, i) and set_NAME(paths, i, value) for every row.
@@ -135,17 +147,20 @@ typedef struct {
 PATH_BUFFERS(PATH_ACCESS)
 RESULT_BUFFERS(RESULT_ACCESS)
 
-// Planes of TEXTURE_BUFFERS are numbered.
-#define TEXTURE_ACCESS(type, name)                                       \
+// Planes of TEXTURE_BUFFERS and TEXTURE_RESULT_BUFFERS are numbered.
+#define NUMBERED_ACCESS(type, name, stride)                              \
     SHARED type get_##name(const Paths* paths, int plane, int i)         \
     {                                                                    \
-        return paths->name[plane * paths->capacity + i];                 \
+        return paths->name[plane * paths->stride + i];                   \
     }                                                                    \
     SHARED void set_##name(const Paths* paths, int plane, int i, type x) \
     {                                                                    \
-        paths->name[plane * paths->capacity + i] = x;                    \
+        paths->name[plane * paths->stride + i] = x;                      \
     }
+#define TEXTURE_ACCESS(type, name) NUMBERED_ACCESS(type, name, capacity)
+#define TEXTURE_RESULT_ACCESS(type, name) NUMBERED_ACCESS(type, name, results)
 TEXTURE_BUFFERS(TEXTURE_ACCESS)
+TEXTURE_RESULT_BUFFERS(TEXTURE_RESULT_ACCESS)
 
 // Behind the materials, in the same buffer, lie the programs and arguments of their textures
 // (common/textures/procedural.h): word `word` of it.

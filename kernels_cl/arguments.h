@@ -9,6 +9,7 @@
 #define PATH_ARGUMENT(type, name, life) GLOBAL PLANE(type) * name,
 #define RESULT_ARGUMENT(type, name) GLOBAL PLANE(type) * name,
 #define TEXTURE_ARGUMENT(type, name) GLOBAL PLANE(type) * name,
+#define TEXTURE_RESULT_ARGUMENT(type, name) GLOBAL PLANE(type) * name,
 
 // is_compacted: the paths are live[first] to live[first + count - 1], else first to
 // first + count - 1.
@@ -17,6 +18,7 @@
     PATH_BUFFERS(PATH_ARGUMENT)                                                                   \
     RESULT_BUFFERS(RESULT_ARGUMENT)                                                               \
     TEXTURE_BUFFERS(TEXTURE_ARGUMENT)                                                             \
+    TEXTURE_RESULT_BUFFERS(TEXTURE_RESULT_ARGUMENT)                                               \
     GLOBAL const WorkItem *items, GLOBAL const int *live, int capacity, int results, int samples, \
         int pixel_shift, int first, int count, int is_compacted
 
@@ -24,6 +26,7 @@
 #define BIND_PATH(type, name, life) paths.name = name;
 #define BIND_RESULT(type, name) paths.name = name;
 #define BIND_TEXTURE(type, name) paths.name = name;
+#define BIND_TEXTURE_RESULT(type, name) paths.name = name;
 
 // Declares the views `scene` and `paths` over the arguments.
 #define KERNEL_VIEWS                 \
@@ -39,4 +42,5 @@
     paths.items = items;             \
     PATH_BUFFERS(BIND_PATH)          \
     RESULT_BUFFERS(BIND_RESULT)      \
-    TEXTURE_BUFFERS(BIND_TEXTURE)
+    TEXTURE_BUFFERS(BIND_TEXTURE)    \
+    TEXTURE_RESULT_BUFFERS(BIND_TEXTURE_RESULT)

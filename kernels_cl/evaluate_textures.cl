@@ -33,7 +33,7 @@ static TextureValue call(TextureContext* tx, int function, int region)
 static void evaluate_textures(const Scene* scene, const Paths* paths, int i)
 {
     const int hit = get_hit_triangle(paths, i);
-    if (hit < 0) return;
+    if (hit < 0 || get_depth(paths, i) < 0) return;
     const int word = scene->materials[scene->triangles[hit].material].texture_program;
     if (word == 0) return;
     const TextureProgram program = texture_program(scene, word);
@@ -44,7 +44,10 @@ static void evaluate_textures(const Scene* scene, const Paths* paths, int i)
     for (int k = 0; k < program.steps; ++k) {
         const TextureStep step = texture_step(scene, program.first, k);
         texture_begin(&tx, step);
-        const TextureValue value = call(&tx, step.function, step.region);
+        const TextureValue given = call(&tx, step.function, step.region);
+        const int verdict = texture_verdict(&tx, given);
+        if (verdict != 0) texture_count(paths, i, verdict);
+        const TextureValue value = texture_finite(given);
         texture_push(stack, step.slot, value);
         texture_store(paths, i, step.outputs, value);
     }

@@ -79,6 +79,15 @@ void Chunk::run(const PathView& results, int first_result, const void* item)
                             size_t(first_result) *                             \
                                 (#type[0] == 'f' ? kernels_.real_bytes : sizeof(int)));
     RESULT_BUFFERS(OFFSET_RESULT)
+#undef OFFSET_RESULT
+    std::vector<void*> texture_result_planes;
+    row = 0;
+#define OFFSET_RESULT(type, name)                                                              \
+    texture_result_planes.push_back(static_cast<char*>(results.texture_result_planes[row++]) + \
+                                    size_t(first_result) *                                     \
+                                        (#type[0] == 'f' ? kernels_.real_bytes : sizeof(int)));
+    TEXTURE_RESULT_BUFFERS(OFFSET_RESULT)
+#undef OFFSET_RESULT
     for (int first = 0; first < results.samples; first += at_once) {
         WorkItem part = *static_cast<const WorkItem*>(item);
         part.first_sample += first;
@@ -87,6 +96,7 @@ void Chunk::run(const PathView& results, int first_result, const void* item)
         view_.pixel_shift = shift;
         view_.items = &part;
         view_.result_planes = result_planes.data();
+        view_.texture_result_planes = texture_result_planes.data();
         const int count = at_once << shift;
         trace_paths(count);
         view_.planes = retired_planes_.data();

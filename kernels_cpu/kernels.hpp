@@ -22,16 +22,30 @@ struct PathView {
     const void* items = nullptr;  // WorkItem
     void* const* planes = nullptr;
     void* const* result_planes = nullptr;
-    void* const* texture_planes = nullptr;  // one of each row of TEXTURE_BUFFERS
+    void* const* texture_planes = nullptr;         // one of each row of TEXTURE_BUFFERS
+    void* const* texture_result_planes = nullptr;  // likewise, TEXTURE_RESULT_BUFFERS
 };
 
 // Runs a stage for paths (or results) first .. first + count - 1.
 using StageLoop = void (*)(const SceneView&, const PathView&, int first, int count);
 
+// What a step of a texture's program did, for who looks at one path.
+struct TextureStepSeen {
+    int number;           // of the step
+    const double* stack;  // four of each slot, before it
+    double value[4];      // what it gave, as it gave it
+    int fault_line;       // see TextureContext
+    int clamped;
+};
+using TextureWatch = void (*)(void* watcher, const TextureStepSeen&);
+
 // The stage that holds user code: compiled while the program runs (backends/textures), for one
 // scene and one kernel set.
 struct TextureKernels {
     StageLoop evaluate = nullptr;
+    // The same for one path, step by step; not there where the stage is vectorised.
+    void (*watch)(const SceneView&, const PathView&, int path, TextureWatch,
+                  void* watcher) = nullptr;
     int planes[2] = {};  // of each row of TEXTURE_BUFFERS
 };
 

@@ -17,6 +17,7 @@ struct Lanes {
     int path[lane_count];
     int first_step[lane_count];  // word of the first step of the path's program
     float value[4][lane_count];
+    int verdict[lane_count];  // texture_verdict of the step
     float stack[4 * TEXTURE_SLOTS][lane_count];
     TEXTURE_ATTRIBUTES(LANE_FIELD)
 };
@@ -81,8 +82,6 @@ SHARED TextureContext context_of(const Scene* scene, const Paths* paths, const L
     tx.stack = &lanes.stack[0][0];
     tx.stack_stride = lane_count;
     tx.lane = k;
-    tx.fault_line = 0;
-    tx.clamped = 0;
     return tx;
 }
 
@@ -95,11 +94,13 @@ SHARED TextureContext context_of(const Scene* scene, const Paths* paths, const L
         TextureContext tx = context_of(scene, paths, lanes, k);                                  \
         texture_begin(&tx, step);                                                                \
         const int own = int(material_word(scene, lanes.first_step[k] + offset));                 \
-        const auto value = user_language::id::id##_entry(&tx, is_uniform ? step.region : own);   \
-        lanes.value[0][k] = value.x;                                                             \
-        lanes.value[1][k] = value.y;                                                             \
-        lanes.value[2][k] = value.z;                                                             \
-        lanes.value[3][k] = value.w;                                                             \
+        const auto given = user_language::id::id##_entry(&tx, is_uniform ? step.region : own);   \
+        lanes.verdict[k] = texture_verdict(&tx, VALUE_OF(given));                                \
+        const TextureValue value = texture_finite(VALUE_OF(given));                              \
+        lanes.value[0][k] = value.r;                                                             \
+        lanes.value[1][k] = value.g;                                                             \
+        lanes.value[2][k] = value.b;                                                             \
+        lanes.value[3][k] = value.a;                                                             \
     }                                                                                            \
     template<bool is_uniform>                                                                    \
     [[gnu::noinline]] void id##_loop(const Scene& scene_in, const Paths& paths_in, Lanes& lanes, \
@@ -114,6 +115,10 @@ TEXTURE_FUNCTIONS(FUNCTION_LOOP)
 
 void keep(const Paths& paths, Lanes& lanes, int count, const TextureStep& step)
 {
+    int any = 0;
+    for (int k = 0; k < count; ++k) any |= lanes.verdict[k];
+    for (int k = 0; any != 0 && k < count; ++k)
+        if (lanes.verdict[k] != 0) texture_count(&paths, lanes.path[k], lanes.verdict[k]);
     for (int c = 0; c < 4 && step.slot >= 0; ++c)
         std::memcpy(lanes.stack[4 * step.slot + c], lanes.value[c], sizeof lanes.value[c]);
     for (int output = 0; output < SLOT_COUNT; ++output) {

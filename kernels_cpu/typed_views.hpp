@@ -30,11 +30,15 @@ inline Paths paths_from(const PathView& view)
 #define BIND_PATH(type, name, life) BIND_PLANE(planes, name)
 #define BIND_RESULT(type, name) BIND_PLANE(result_planes, name)
 #define BIND_TEXTURE(type, name) BIND_PLANE(texture_planes, name)
+#define BIND_TEXTURE_RESULT(type, name) BIND_PLANE(texture_result_planes, name)
     PATH_BUFFERS(BIND_PATH)
     row = 0;
     RESULT_BUFFERS(BIND_RESULT)
     row = 0;
     TEXTURE_BUFFERS(BIND_TEXTURE)
+    row = 0;
+    TEXTURE_RESULT_BUFFERS(BIND_TEXTURE_RESULT)
+#undef BIND_TEXTURE_RESULT
 #undef BIND_TEXTURE
 #undef BIND_RESULT
 #undef BIND_PATH

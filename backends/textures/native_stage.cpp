@@ -7,6 +7,7 @@
 #include "backends/textures/subprocess.hpp"
 #include "backends/textures/texture_source.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <dlfcn.h>
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* entry_name = "diptych_evaluate_textures";
+constexpr const char* watch_name = "diptych_watch_textures";
 std::atomic<unsigned long> compilations{0};
 
 void write_text(const fs::path& file, const std::string& text)
@@ -202,8 +204,8 @@ NativeStage::NativeStage(const SceneData& scene, const NativeStageOptions& optio
     if (!kernels_.evaluate)
         throw std::runtime_error("procedural textures: " + object.string() +
                                  " lacks its entry; delete it, so that it is made again");
-    kernels_.planes[0] = scene.textures.occlusion_results;
-    kernels_.planes[1] = 4 * scene.textures.outputs;
+    kernels_.watch = reinterpret_cast<decltype(kernels_.watch)>(dlsym(library_, watch_name));
+    std::ranges::copy(texture_planes(scene), kernels_.planes);
 }
 
 NativeStage::~NativeStage()

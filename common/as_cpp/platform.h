@@ -34,6 +34,8 @@ SHARED uint as_uint(float x) { return __builtin_bit_cast(uint, x); }
 SHARED float as_float(uint x) { return __builtin_bit_cast(float, x); }
 SHARED float as_float(int x) { return __builtin_bit_cast(float, x); }
 
+SHARED void atomic_add_int(int* at, int value) { __atomic_fetch_add(at, value, __ATOMIC_RELAXED); }
+
 SHARED float math_sqrt(float x) { return __builtin_sqrtf(x); }
 SHARED float math_abs(float x) { return __builtin_fabsf(x); }
 SHARED float math_floor(float x) { return __builtin_floorf(x); }

@@ -55,6 +55,8 @@ SHARED uint as_uint(STORED_float x) { return std::bit_cast<uint>(x); }
 SHARED float as_float(uint x) { return std::bit_cast<STORED_float>(x); }
 SHARED float as_float(int x) { return std::bit_cast<STORED_float>(x); }
 
+SHARED void atomic_add_int(int* at, int value) { __atomic_fetch_add(at, value, __ATOMIC_RELAXED); }
+
 SHARED float math_sqrt(float x) { return std::sqrt(x); }
 SHARED float math_abs(float x) { return std::fabs(x); }
 SHARED float math_floor(float x) { return std::floor(x); }

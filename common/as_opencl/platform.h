@@ -33,5 +33,10 @@ SHARED float math_sqrt(float x) { return sqrt(x); }
 SHARED float math_abs(float x) { return fabs(x); }
 SHARED float math_floor(float x) { return floor(x); }
 
+SHARED void atomic_add_int(GLOBAL int* at, int value)
+{
+    atomic_add((volatile GLOBAL int*)at, value);
+}
+
 #include "common/as_float/elementary.h"
 #include "common/math.h"

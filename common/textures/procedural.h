@@ -11,6 +11,7 @@
 //            source >= 0: the value is what lies in that stack slot; -1: a constant.
 #pragma once
 
+#include "common/random.h"
 #include "common/textures/texture_place.h"
 
 #define TEXTURE_PROGRAM_WORDS 4
@@ -181,6 +182,54 @@ SHARED void texture_begin(TextureContext* tx, TextureStep step)
 {
     tx->first_occlusion = step.first_occlusion;
     tx->budget = TEXTURE_BUDGET;
+    tx->fault_line = 0;
+    tx->clamped = 0;
+}
+
+#define TEXTURE_MOST_CLAMPED 65535  // of those of one evaluation, counted
+
+SHARED int texture_is_finite(TextureValue v)
+{
+    return vec_is_finite(make_float3(v.r, v.g, v.b)) & (math_abs(v.a) <= FLOAT_MAX);
+}
+
+// The value that others are given: 0 in place of what is not finite.
+SHARED TextureValue texture_finite(TextureValue v)
+{
+    v.r = math_abs(v.r) <= FLOAT_MAX ? v.r : 0.0f;
+    v.g = math_abs(v.g) <= FLOAT_MAX ? v.g : 0.0f;
+    v.b = math_abs(v.b) <= FLOAT_MAX ? v.b : 0.0f;
+    v.a = math_abs(v.a) <= FLOAT_MAX ? v.a : 0.0f;
+    return v;
+}
+
+// What was wrong with an evaluation that gave v, in one word; 0: nothing.
+SHARED int texture_verdict(const TextureContext* tx, TextureValue v)
+{
+    const int clamped = tx->clamped < TEXTURE_MOST_CLAMPED ? tx->clamped : TEXTURE_MOST_CLAMPED;
+    return (texture_is_finite(v) ? 0 : 1) | (tx->fault_line != 0 ? 2 : 0) | clamped << 2;
+}
+
+// Where the result of path i is summed, wherever compaction has put the path: on a device that
+// closes ranks, all paths are of one work item.
+SHARED int texture_result_entry(const Paths* paths, int i)
+{
+    const int item = (int)((float)(i >> paths->pixel_shift) * (1.0f / (float)paths->samples));
+    const uint pixel = (uint)get_pixel(paths, i);
+    const int x = (int)(pixel & 0xffffu) - paths->items[item].x;
+    const int y = (int)(pixel >> 16) - paths->items[item].y;
+    return item << paths->pixel_shift | (int)morton_code(x, y);
+}
+
+// Counts what was wrong for the pixel of path i. Sums of integers are the same in any order.
+SHARED void texture_count(const Paths* paths, int i, int verdict)
+{
+    const int entry = texture_result_entry(paths, i);
+    const int counts[TEXTURE_FAULT_COUNT] = {verdict & 1, verdict >> 1 & 1, verdict >> 2};
+    for (int fault = 0; fault < TEXTURE_FAULT_COUNT; ++fault) {
+        if (counts[fault] != 0)
+            atomic_add_int(paths->texture_faults + (fault * paths->results + entry), counts[fault]);
+    }
 }
 
 SHARED void texture_push(float* stack, int slot, TextureValue value)

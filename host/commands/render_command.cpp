@@ -153,8 +153,9 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
     add_picture_flags(*render, command.view, command.write);
     add_checkpoint_flags(*render, command.checkpoint);
     render->add_flag("--quiet", command.is_quiet, "Print errors only");
-    render->add_flag("--strict", command.is_strict,
-                     "Make a sample that is not finite an error instead of dropping it");
+    render->add_flag(
+        "--strict", command.is_strict,
+        "Make a sample or a texture's result that is not finite an error instead of going on");
     render->add_flag("--reproducible", command.is_reproducible,
                      "Leave times, device and command line out of the pictures");
     render->add_option("--json", command.json,
@@ -219,6 +220,16 @@ int run_render_command(const RenderCommand& command)
                                  "; render without --strict to drop them");
     if (faults.count > 0) fmt::print(stderr, "notice: {}\n", fault_text(faults, place));
 
+    const TextureFaultReport textures =
+        find_texture_faults(*backend, run.device.backend, scene, result.film.texture_faults());
+    for (int kind = 0; kind < TEXTURE_FAULT_COUNT; ++kind) {
+        if (textures.faults.of_kind[size_t(kind)].count == 0) continue;
+        const std::string text = texture_fault_text(textures, kind);
+        if (kind == TEXTURE_FAULT_NOT_FINITE && run.is_strict)
+            throw std::runtime_error(text + "; render without --strict to go on with 0");
+        fmt::print(stderr, "notice: {}\n", text);
+    }
+
     image::Picture picture;
     if (!run.outputs.empty() || !run.json.empty()) picture = picture_of(result.film, options);
     if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
@@ -235,8 +246,8 @@ int run_render_command(const RenderCommand& command)
     if (!run.is_quiet && error) fmt::print(stderr, "{}\n", ending_text(result, options, *error));
     if (audited) print_audit(*audited, aim);
     if (!run.json.empty()) {
-        const std::string report = json_report(run, scene, *backend, result, picture, place, error,
-                                               audited, checkpoint.writer()) +
+        const std::string report = json_report(run, scene, *backend, result, picture, place,
+                                               textures, error, audited, checkpoint.writer()) +
                                    "\n";
         if (run.json == "-")
             std::cout << report << std::flush;

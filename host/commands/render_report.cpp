@@ -141,6 +141,7 @@ std::string scene_hash(const SceneData& scene)
 std::string json_report(const RenderCommand& command, const SceneData& scene,
                         const Backend& backend, const RenderResult& result,
                         const image::Picture& picture, const std::optional<FaultPlace>& fault,
+                        const TextureFaultReport& textures,
                         const std::optional<ErrorSummary>& error,
                         const std::optional<Audit>& audited, const CheckpointWriter* checkpoint)
 {
@@ -191,6 +192,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
                            {"share_within", audited->share_within},
                            {"share_covered", audited->share_covered},
                            {"seconds", audited->seconds}};
+    if (scene.effects & EFFECT_PROCEDURAL) report["textures"] = texture_fault_json(textures);
     if (fault)
         report["first_dropped"] = {{"x", fault->x},           {"y", fault->y},
                                    {"sample", fault->sample}, {"bounce", fault->bounce},

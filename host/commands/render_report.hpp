@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host/commands/render_command.hpp"
+#include "host/commands/texture_fault_report.hpp"
 #include "host/render/audit.hpp"
 #include "host/render/render.hpp"
 
@@ -38,6 +39,7 @@ std::optional<FaultPlace> find_fault(Backend& backend, const Faults& faults, int
 std::string json_report(const RenderCommand& command, const SceneData& scene,
                         const Backend& backend, const RenderResult& result,
                         const image::Picture& picture, const std::optional<FaultPlace>& fault,
+                        const TextureFaultReport& textures,
                         const std::optional<ErrorSummary>& error,
                         const std::optional<Audit>& audited, const CheckpointWriter* checkpoint);
 

@@ -41,6 +41,7 @@ void compare_results(const Results& a, const Results& b, const Dispatch& dispatc
     };
 #define COMPARE_RESULT(type, name) compare(a.name, b.name);
     RESULT_BUFFERS(COMPARE_RESULT)
+    TEXTURE_RESULT_BUFFERS(COMPARE_RESULT)
 #undef COMPARE_RESULT
     tally.paths += dispatch.results();
     tally.parted += int(std::count(is_off.begin(), is_off.end(), 1));

@@ -2,6 +2,8 @@
 
 #include "backends/textures/texture_tool.hpp"
 #include "host/commands/texture_cost.hpp"
+#include "host/commands/texture_fault_report.hpp"
+#include "host/commands/texture_memory.hpp"
 #include "host/commands/texture_preview.hpp"
 #include "host/render/render.hpp"
 
@@ -143,6 +145,11 @@ int preview(const TextureCommand& command)
     if (result.film.faults().count > 0)
         fmt::print(stderr, "notice: {} samples were not finite and were dropped\n",
                    result.film.faults().count);
+    const TextureFaultReport faults =
+        find_texture_faults(*backend, command.device.backend, scene, result.film.texture_faults());
+    for (int kind = 0; kind < TEXTURE_FAULT_COUNT; ++kind)
+        if (faults.faults.of_kind[size_t(kind)].count > 0)
+            fmt::print(stderr, "notice: {}\n", texture_fault_text(faults, kind));
     image::write_picture(command.output, result.film.picture());
     fmt::print("wrote {}\n", command.output);
     return 0;
@@ -185,6 +192,11 @@ CLI::App* add_texture_command(CLI::App& app, TextureCommand& command)
     preview->add_option("--samples", command.samples, "Samples a pixel")->capture_default_str();
     add_device_flags(*preview, command.device);
 
+    CLI::App* memory = texture->add_subcommand(
+        "memory", "Show where a scene's materials keep the programs and arguments of textures");
+    add_scene_flags(*memory, command.scene);
+    memory->add_option("--json", command.json, "Write the same as JSON; - is standard output");
+
     CLI::App* cost = texture->add_subcommand(
         "cost", "Measure an evaluation on every backend, and what compilers for GPUs say of it");
     add_file(*cost, command);
@@ -201,6 +213,7 @@ int run_texture_command(const CLI::App& texture, const TextureCommand& command)
     if (name == "check") return check(command);
     if (name == "show") return show(command);
     if (name == "preview") return preview(command);
+    if (name == "memory") return show_texture_memory(command.scene, command.json);
     return cost(command);
 }
 

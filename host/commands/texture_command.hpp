@@ -1,4 +1,5 @@
-// `diptych texture check|show|preview|cost FILE`: one texture, without a scene.
+// `diptych texture check|show|preview|cost FILE`: one texture, without a scene; `diptych texture
+// memory SCENE`: those of a scene.
 #pragma once
 
 #include "host/commands/scene_flags.hpp"
@@ -15,6 +16,8 @@ struct TextureCommand {
     int samples = 32;
     DeviceFlags device;
     std::string backends;  // cost
+    SceneFlags scene;      // memory
+    std::string json;      // memory
 };
 
 CLI::App* add_texture_command(CLI::App& app, TextureCommand& command);

@@ -34,7 +34,7 @@ template<class Data, class Function>
 void for_each_array(Data& data, Function&& function)
 {
     auto& [window, batches, radiance, batch_samples, alpha, albedo, normal, distance, object,
-           material, faults] = data;
+           material, faults, texture_faults] = data;
     function("radiance", radiance);
     function("batch_samples", batch_samples);
     function("alpha", alpha);
@@ -100,6 +100,10 @@ std::string header_text(const CheckpointHead& head, const Film& film)
         arrays.push_back({name, bytes_of(array)});
     });
     const Faults& faults = data.faults;
+    json texture_faults = json::array();
+    for (const TextureFault& fault : data.texture_faults.of_kind)
+        texture_faults.push_back(
+            {fault.count, fault.x, fault.y, fault.first_sample, fault.samples});
     const json header = {
         {"program", head.subject.program},
         {"scene", head.subject.scene},
@@ -114,6 +118,7 @@ std::string header_text(const CheckpointHead& head, const Film& film)
         {"height", film.height()},
         {"batches", data.batches},
         {"faults", {faults.count, faults.x, faults.y, faults.first_sample}},
+        {"texture_faults", texture_faults},
         {"done", fraction_done(head)},
         {"arrays", arrays},
     };
@@ -149,6 +154,12 @@ Checkpoint checkpoint_from(const json& in, size_t left)
     Film film(width, height, {0, 0, width, height}, batches);
     const json& faults = in.at("faults");
     film.data().faults = {faults.at(0), faults.at(1), faults.at(2), faults.at(3)};
+    const json& texture_faults = in.at("texture_faults");
+    auto& of_kind = film.data().texture_faults.of_kind;
+    for (size_t kind = 0; kind < of_kind.size(); ++kind) {
+        const json& fault = texture_faults.at(kind);
+        of_kind[kind] = {fault.at(0), fault.at(1), fault.at(2), fault.at(3), fault.at(4)};
+    }
     size_t k = 0;
     for_each_array(film.data(), [&](const char* name, const auto& array) {
         const json& stated = in.at("arrays").at(k++);

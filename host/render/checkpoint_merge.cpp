@@ -64,9 +64,10 @@ void join_neighbours(std::vector<Slice>& slices)
 }
 
 // The first is the one that comes first in the order of samples.
-Faults merged_faults(const Faults& a, const Faults& b)
+template<class Fault>
+Fault merged_faults(const Fault& a, const Fault& b)
 {
-    Faults faults = a.count == 0 || (b.count > 0 && b.first_sample < a.first_sample) ? b : a;
+    Fault faults = a.count == 0 || (b.count > 0 && b.first_sample < a.first_sample) ? b : a;
     faults.count = a.count + b.count;
     return faults;
 }
@@ -79,7 +80,7 @@ void add_film(Film& film, const Film& more)
     const Film wide = with_batches(more, batches);
     // The list of members is whole, or it does not compile.
     auto& [window, batch_number, radiance, batch_samples, alpha, albedo, normal, distance, object,
-           material, faults] = film.data();
+           material, faults, texture_faults] = film.data();
     const FilmData& data = wide.data();
     add_to(radiance, data.radiance);
     add_to(batch_samples, data.batch_samples);
@@ -90,6 +91,11 @@ void add_film(Film& film, const Film& more)
     for (size_t p = 0; p < object.size(); ++p) {
         object[p] = std::max(object[p], data.object[p]);  // -1 in all slices but the first
         material[p] = std::max(material[p], data.material[p]);
+    }
+    faults = merged_faults(faults, data.faults);
+    for (size_t kind = 0; kind < texture_faults.of_kind.size(); ++kind) {
+        TextureFault& fault = texture_faults.of_kind[kind];
+        fault = merged_faults(fault, data.texture_faults.of_kind[kind]);
     }
 }
 
@@ -133,9 +139,7 @@ void expect_mergeable(const CheckpointHead& a, const std::string& name_a, const 
 
 void add_checkpoint(Checkpoint& all, const Checkpoint& more)
 {
-    const Faults faults = merged_faults(all.film.faults(), more.film.faults());
     add_film(all.film, more.film);
-    all.film.data().faults = faults;
     CheckpointHead& head = all.head;
     head.slices.insert(head.slices.end(), more.head.slices.begin(), more.head.slices.end());
     join_neighbours(head.slices);

@@ -84,6 +84,7 @@ void Film::add(const Dispatch& dispatch, const Results& results)
                 if (data_.faults.count == 0) data_.faults = {0, x, y, item.first_sample};
                 data_.faults.count += unsigned(dropped);
             }
+            data_.texture_faults.add(dispatch, results, r, x, y, item.first_sample);
         }
     }
 }
@@ -161,6 +162,7 @@ void Film::forget_samples()
     fresh.object = std::move(data_.object);
     fresh.material = std::move(data_.material);
     fresh.faults = data_.faults;
+    fresh.texture_faults = data_.texture_faults;
     data_ = std::move(fresh);
 }
 

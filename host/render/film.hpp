@@ -3,6 +3,7 @@
 
 #include "backends/backend.hpp"
 #include "host/image/image.hpp"
+#include "host/render/texture_faults.hpp"
 
 #include <array>
 
@@ -43,6 +44,7 @@ struct FilmData {
     std::vector<double> albedo, normal, distance;
     std::vector<int> object, material;  // met by the very first sample; -1: nothing, not rendered
     Faults faults;
+    TextureFaults texture_faults;
 };
 
 // How many batches the samples 0 to end - 1 fall into.
@@ -60,6 +62,7 @@ public:
     int width() const { return width_; }  // of the picture
     int height() const { return height_; }
     const Faults& faults() const { return data_.faults; }
+    const TextureFaults& texture_faults() const { return data_.texture_faults; }
     const FilmData& data() const { return data_; }
     FilmData& data() { return data_; }
 

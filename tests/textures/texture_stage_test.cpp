@@ -105,6 +105,36 @@ TEST_P(Textures, TX_7_NodesReadOtherNodes)
     EXPECT_TRUE(laws::obeys(measure(data), 0.25));
 }
 
+// Every evaluation of node "counted" reads one element that is not there.
+TEST_P(Textures, TX_7_ASharedNodeIsEvaluatedOnceAHit)
+{
+    SceneBuilder scene;
+    const int counting = scene.add_texture_function(
+        handwritten("t0", {{"level", "float"}},
+                    "    const float x = level + (float)tx_index(tx, 3, 2) - 1.0f;\n"
+                    "    return TX_NEW(float4, x, x, x, 1.0f);"));
+    const int mean = scene.add_texture_function(
+        handwritten("t1", {{"a", "float4"}, {"b", "float"}, {"c", "float3"}},
+                    "    const float x = (a.x + b + c.x) / 3.0f;\n"
+                    "    return TX_NEW(float4, x, x, x, 1.0f);"));
+    const int counted = scene.add_texture_node({"counted", counting, {{"level", numbers({0.5})}}});
+    const TextureInput shared{.node = counted};
+    const int left =
+        scene.add_texture_node({"left", mean, {{"a", shared}, {"b", shared}, {"c", shared}}});
+    const int right = scene.add_texture_node(
+        {"right", mean, {{"a", {.node = left}}, {"b", shared}, {"c", {.node = left}}}});
+    SceneData data =
+        furnace(scene, {.base_texture = node(right), .metallic_roughness_texture = node(counted)});
+    data.settings[0].max_bounces = 0;
+    backend_->upload(data);
+    const RenderResult result = render(*backend_, data, {.samples = 20});
+    const auto& faults = result.film.texture_faults().of_kind;
+    EXPECT_EQ(faults[TEXTURE_FAULT_INDEX].count, 20u * 16 * 16);
+    EXPECT_EQ(faults[TEXTURE_FAULT_NOT_FINITE].count, 0u);
+    EXPECT_EQ(faults[TEXTURE_FAULT_BUDGET].count, 0u);
+    EXPECT_EQ(faults[TEXTURE_FAULT_INDEX].first_sample, 0);
+}
+
 // The share of a cosine-distributed hemisphere that a wall of height 1 and width 2 takes, seen from
 // the floor before its middle (the form factor of a perpendicular rectangle, twice).
 double share_of_wall(double distance)

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 using namespace diptych;
 
@@ -179,6 +180,38 @@ TEST_F(TextureCommandLine, SoloShowsTheRawValueOfANode)
     EXPECT_NEAR(pixel("left", "12,8")[0], wave(2), 0.02);
     EXPECT_EQ(pixel("paint", "30,8"), (std::array<double, 3>{0, 0, 0})) << "another material";
     EXPECT_EQ(pixel("paint", "0,0"), (std::array<double, 3>{0, 0, 0})) << "no surface";
+}
+
+// The paper's figure 2: materials' pages name the regions of their arguments and the programs.
+TEST_F(TextureCommandLine, TX_6_MemoryShowsPagesRegionsAndPrograms)
+{
+    write_painted_scene(folder_);
+    const Outcome shown = texture({"memory", folder_ / "scene.gltf"});
+    ASSERT_EQ(shown.exit_code, 0) << shown.text();
+    for (const char* text :
+         {"material painted: runs the program on page", "material plain\n", "region on page",
+          "arguments of node paint on painted: userProc in ", "float3    tint", "[0.5,0.75,1.0]",
+          "program of painted", "run node left", "run node paint"})
+        EXPECT_NE(shown.out.find(text), std::string::npos) << text << "\n" << shown.out;
+
+    const Outcome written = texture({"memory", folder_ / "scene.gltf", "--json", "-"});
+    const nlohmann::json memory = nlohmann::json::parse(written.out);
+    ASSERT_EQ(memory.at("materials").size(), 2u);
+    ASSERT_EQ(memory.at("regions").size(), 2u);
+    ASSERT_EQ(memory.at("programs").size(), 1u);
+    EXPECT_EQ(memory["materials"][0]["program_page"], memory["programs"][0]["page"]);
+    EXPECT_FALSE(memory["materials"][1].contains("program_page"));
+    EXPECT_EQ(memory["programs"][0]["steps"].size(), 2u);
+    std::set<int> pages;  // nothing lies on a page of something else
+    for (const auto& region : memory["regions"])
+        for (int k = 0; k < region["pages"]; ++k)
+            EXPECT_TRUE(pages.insert(int(region["page"]) + k).second);
+    EXPECT_TRUE(pages.insert(int(memory["programs"][0]["page"])).second);
+    EXPECT_GE(*pages.begin(), 2);
+    EXPECT_LT(*pages.rbegin(), memory["pages"]);
+    for (const auto& step : memory["programs"][0]["steps"])
+        EXPECT_EQ(pages.count(int(step["region"]) / int(memory["page_words"])), 1u);
+    EXPECT_EQ(texture({"memory"}).exit_code, 2);
 }
 
 }  // namespace
