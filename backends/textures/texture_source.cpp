@@ -9,8 +9,8 @@ namespace {
 const std::string place = "#pragma diptych textures\n";
 
 // What the stage looks at beside the textures themselves.
-constexpr unsigned effects_read =
-    EFFECT_INSTANCES | EFFECT_SMOOTH_NORMALS | EFFECT_VERTEX_COLOR | EFFECT_FLOAT_TEXTURES;
+constexpr unsigned effects_read = EFFECT_INSTANCES | EFFECT_SMOOTH_NORMALS | EFFECT_VERTEX_COLOR |
+                                  EFFECT_FLOAT_TEXTURES | EFFECT_ORTHOGRAPHIC;
 
 std::string definitions(const SceneData& scene)
 {

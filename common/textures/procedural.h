@@ -12,6 +12,7 @@
 #pragma once
 
 #include "common/random.h"
+#include "common/textures/texture_differentials.h"
 #include "common/textures/texture_place.h"
 
 #define TEXTURE_PROGRAM_WORDS 4
@@ -136,6 +137,12 @@ SHARED TextureContext texture_context(const Scene* scene, const Paths* paths, in
                                    scene->settings[0].texture_uv_set[1]);
     tx.uv0_dx = none;
     tx.uv0_dy = none;
+    if ((asked & (ATTRIBUTE_TexCoord0Dx | ATTRIBUTE_TexCoord0Dy)) != 0u) {
+        const TextureDifferentials change =
+            texture_differentials(scene, paths, i, place, scene->settings[0].texture_uv_set[0]);
+        tx.uv0_dx = change.dx;
+        tx.uv0_dy = change.dy;
+    }
     tx.vertex_color = make_float4(1.0f, 1.0f, 1.0f, 1.0f);
     if (uses(scene, EFFECT_VERTEX_COLOR) && (asked & ATTRIBUTE_VertexColor) != 0u)
         tx.vertex_color = surface_vertex_color(scene, place.triangle, place.weights);

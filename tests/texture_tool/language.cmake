@@ -2,19 +2,30 @@
 # without optimisation, as optimised C++ and as OpenCL.
 set(LANGUAGE_GENERATED ${CMAKE_CURRENT_BINARY_DIR}/language)
 file(MAKE_DIRECTORY ${LANGUAGE_GENERATED})
-foreach(texture paper_attributes paper_two_images predecessor forms everything defined_results)
+set(HOSTILE_TEXTURES forms everything defined_results misbehaving)  # run under the sanitizers and Oclgrind
+foreach(texture paper_attributes paper_two_images predecessor forms everything defined_results misbehaving)
   set(source ${CMAKE_CURRENT_SOURCE_DIR}/textures/${texture}.c)
   set(out ${LANGUAGE_GENERATED}/${texture})
   add_custom_command(OUTPUT ${out}.cl ${out}.hpp ${out}.json
     COMMAND diptych-texture ${source} --opencl ${out}.cl --cpp ${out}.hpp --json ${out}.json
     DEPENDS ${source} diptych-texture VERBATIM)
   set(programs)
-  foreach(level 0 3)
+  set(levels 0 3)
+  if(texture IN_LIST HOSTILE_TEXTURES)
+    list(APPEND levels sanitized)
+  endif()
+  foreach(level ${levels})
     set(program foreign_${texture}_${level})
     add_executable(${program} foreign_program.cpp ${out}.hpp)
     target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/common/as_cpp)
     target_compile_definitions(${program} PRIVATE ALWAYS_INLINE= TEXTURE_TEXT="${out}.hpp")
-    target_compile_options(${program} PRIVATE -O${level} -w ${HOUSE_ARITHMETIC} -fwrapv
+    if(level STREQUAL sanitized)
+      set(how -O1 -fsanitize=address,undefined -fno-sanitize=float-divide-by-zero -fno-sanitize-recover=all)
+      target_link_options(${program} PRIVATE -fsanitize=address,undefined)
+    else()
+      set(how -O${level})
+    endif()
+    target_compile_options(${program} PRIVATE ${how} -w ${HOUSE_ARITHMETIC} -fwrapv
       $<$<CXX_COMPILER_ID:GNU>:-Wno-narrowing> $<$<CXX_COMPILER_ID:Clang>:-Wno-c++11-narrowing>)
     list(APPEND programs $<TARGET_FILE:${program}>)
   endforeach()
@@ -26,6 +37,13 @@ foreach(texture paper_attributes paper_two_images predecessor forms everything d
       DEPENDS foreign_program.cl foreign_hooks.h ${out}.cl VERBATIM)
     add_custom_target(foreign_kernel_${texture} ALL DEPENDS ${out}_kernel.cl)
     set(opencl $<TARGET_FILE:foreign_opencl> ${out}_kernel.cl)
+    find_program(OCLGRIND oclgrind)
+    if(OCLGRIND AND texture IN_LIST HOSTILE_TEXTURES)
+      add_test(NAME texture_oclgrind_${texture} COMMAND ${OCLGRIND} --build-options -cl-opt-disable --data-races
+        --uninitialized --check-api $<TARGET_FILE:foreign_opencl> ${out}_kernel.cl)
+      set_tests_properties(texture_oclgrind_${texture} PROPERTIES
+        FAIL_REGULAR_EXPRESSION "Invalid ;Uninitialized ;data race;ERROR;runtime error")
+    endif()
   endif()
   add_test(NAME texture_language_${texture}
     COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/foreign_test.py ${programs} -- ${opencl})

@@ -284,12 +284,18 @@ SceneData busy_textures()
     const int striped = scene.add_texture_function(stripes("t1"));
     const int sampled = scene.add_texture_function(
         handwritten("t2", {{"image", "sam2D"}, {"tint", "float4"}},
-                    "    const float4 c = tx_sample(tx, image, tx_attribute_TexCoord0(tx));\n"
+                    "    const float2 dx = tx_attribute_TexCoord0Dx(tx);\n"
+                    "    const float2 dy = tx_attribute_TexCoord0Dy(tx);\n"
+                    "    float2 uv = tx_attribute_TexCoord0(tx);\n"
+                    "    uv.x += 3.0f * dx.x - 5.0f * dy.x;\n"
+                    "    uv.y += 3.0f * dy.y - 5.0f * dx.y;\n"
+                    "    const float4 c = tx_sample(tx, image, uv);\n"
                     "    const float3 n = tx_attribute_Normal(tx);\n"
                     "    const float3 t = tx_attribute_Tangent(tx);\n"
                     "    return TX_NEW(float4, c.x * tint.x, c.y * tint.y + 0.1f * math_abs(n.y),\n"
                     "                  c.z * tint.z + 0.1f * math_abs(t.x), 0.5f + 0.5f * n.z);",
-                    ATTRIBUTE_TexCoord0 | ATTRIBUTE_Normal | ATTRIBUTE_Tangent));
+                    ATTRIBUTE_TexCoord0 | ATTRIBUTE_Normal | ATTRIBUTE_Tangent |
+                        ATTRIBUTE_TexCoord0Dx | ATTRIBUTE_TexCoord0Dy));
     Picture checks{4, 4, {}, {}, true, 0};
     for (int k = 0; k < 16; ++k) {
         const std::uint8_t value = (k + k / 4) % 2 ? 220 : 60;
