@@ -43,6 +43,8 @@ struct StageState {
     int bounce;
     int paths;
     std::vector<std::vector<double>> planes;  // empty for rows that no stage so far has defined
+    // After STAGE_evaluate_textures: what it gave, four planes of each result.
+    std::vector<double> texture_results = {};
 };
 
 // What a backend will allocate, known before it does.

@@ -312,7 +312,9 @@ void CpuBackend::trace(const Dispatch& dispatch,
     StageTracer tracer(kernels_, embree_.get(), scene_view_, view_results(dispatch),
                        dispatch.paths());
     tracer.run([&](Stage stage, int bounce, std::vector<std::vector<double>> planes) {
-        after_stage({stage, bounce, dispatch.paths(), std::move(planes)});
+        StageState state{stage, bounce, dispatch.paths(), std::move(planes)};
+        if (stage == STAGE_evaluate_textures) state.texture_results = tracer.texture_results();
+        after_stage(state);
     });
 }
 

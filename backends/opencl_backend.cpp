@@ -4,6 +4,7 @@
 #include "backends/kernel_sources.hpp"
 #include "backends/opencl_memory.hpp"
 #include "backends/opencl_programs.hpp"
+#include "common/as_cpp/path_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -76,6 +77,7 @@ private:
     std::vector<opencl::Buffer> scene_;
     DispatchMemory memory_;
     std::vector<PlaneRow> texture_result_rows_;
+    int texture_results_ = 0;  // planes of row texture_result
     ProgramSet programs_;
     std::array<StageKernel, STAGE_COUNT> kernels_;
     opencl::Kernel compact_count_;
@@ -135,6 +137,7 @@ void OpenclBackend::upload(SceneData& scene)
     scene_ = upload_scene(context_, queue_, device_, scene);
     build_kernels(scene);
     texture_result_rows_ = texture_result_rows(scene);
+    texture_results_ = texture_planes(scene)[row_texture_result];
     memory_ = DispatchMemory(context_, scene, plan(scene).items, device_.group_size);
     for (int k = 0; k < STAGE_COUNT; ++k)
         if (programs_.programs[k] && k != STAGE_compact) bind_buffers(kernels_[k]);
@@ -339,6 +342,12 @@ StageState OpenclBackend::state_after(Stage stage, int bounce)
             }
         }
         state.planes.push_back(std::move(plane));
+    }
+    if (stage == STAGE_evaluate_textures) {
+        std::vector<float> results(size_t(texture_results_) * size_t(paths_));
+        queue_.read(memory_.texture_planes[row_texture_result], results.size() * sizeof results[0],
+                    results.data());
+        state.texture_results.assign(results.begin(), results.end());
     }
     return state;
 }

@@ -83,6 +83,21 @@ StageTracer::Planes StageTracer::planes() const
     return all;
 }
 
+std::vector<double> StageTracer::texture_results() const
+{
+    std::vector<double> values;
+    const int count = scene_.textures ? scene_.textures->planes[row_texture_result] : 0;
+    const auto* planes = static_cast<const unsigned char*>(texture_planes_[row_texture_result]);
+    for (int p = 0; p < count; ++p) {
+        const size_t first = size_t(p) * size_t(view_.capacity);
+        const std::vector<double> plane = kernels_.real_bytes == 8
+                                              ? widen<double>(planes + first * 8, size_t(paths_))
+                                              : widen<float>(planes + first * 4, size_t(paths_));
+        values.insert(values.end(), plane.begin(), plane.end());
+    }
+    return values;
+}
+
 bool StageTracer::is_any_alive() const
 {
     const int* depth = static_cast<const int*>(planes_[row_depth]);

@@ -21,6 +21,9 @@ public:
     using Planes = std::vector<std::vector<double>>;
     void run(const std::function<void(Stage, int bounce, Planes)>& after_stage);
 
+    // Inside after_stage: what textures gave, plane by plane.
+    std::vector<double> texture_results() const;
+
 private:
     void run_stage(Stage stage, int bounce);
     Planes planes() const;

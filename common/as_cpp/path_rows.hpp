@@ -30,6 +30,12 @@ inline constexpr int path_row_count = int(std::size(path_rows));
 inline constexpr int texture_rows = 0 TEXTURE_BUFFERS(COUNT_TEXTURE_ROW);
 #undef COUNT_TEXTURE_ROW
 
+enum TextureRowName {
+#define TEXTURE_ROW_NAME(type, name) row_##name,
+    TEXTURE_BUFFERS(TEXTURE_ROW_NAME)
+#undef TEXTURE_ROW_NAME
+};
+
 enum PathRowName {
 #define PATH_ROW_NAME(type, name, life) row_##name,
     PATH_BUFFERS(PATH_ROW_NAME)

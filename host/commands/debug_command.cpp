@@ -3,6 +3,7 @@
 #include "backends/textures/subprocess.hpp"
 #include "common/as_cpp/path_rows.hpp"
 #include "host/commands/render_command.hpp"
+#include "host/commands/texture_capture.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -179,6 +180,9 @@ void write_launch_file(const json& configuration)
 
 void check(const DebugCommand& command)
 {
+    if (command.debugger != "gdb" && command.debugger != "lldb")
+        throw std::runtime_error("--debugger " + command.debugger + ": use gdb or lldb");
+    if (!command.replay.empty()) return;
     if (command.scene.scene.empty())
         throw std::runtime_error("debug: no scene; name one with procedural textures");
     if (command.pixel.empty())
@@ -187,8 +191,23 @@ void check(const DebugCommand& command)
         command.device.backend != "double")
         throw std::runtime_error("--backend " + command.device.backend +
                                  ": no debugger stops there; use twin, cpu or double");
-    if (command.debugger != "gdb" && command.debugger != "lldb")
-        throw std::runtime_error("--debugger " + command.debugger + ": use gdb or lldb");
+}
+
+// The capture again in this program, which prints what comes out.
+std::vector<std::string> replay_program(const DebugCommand& command)
+{
+    std::error_code error;
+    std::vector<std::string> program = {fs::read_symlink("/proc/self/exe", error).string(), "debug",
+                                        "--replay", command.replay, "--print"};
+    if (!command.scene.scene.empty()) program.push_back(command.scene.scene);
+    const SceneFlags& flags = command.scene;
+    for (const std::string& texture : flags.load.textures)
+        if (texture.find('=') != std::string::npos)
+            program.insert(program.end(), {"--texture", texture});
+    for (const std::string& value : flags.load.texture_values)
+        program.insert(program.end(), {"--set", value});
+    if (flags.load.allow_outside) program.push_back("--allow-outside");
+    return program;
 }
 
 [[noreturn]] void become(const std::vector<std::string>& command)
@@ -200,6 +219,24 @@ void check(const DebugCommand& command)
     execvp(words[0], words.data());
     throw std::runtime_error(command[0] + ": cannot be started; install it, choose another with " +
                              "--debugger, or see the command with --print");
+}
+
+int replay(const DebugCommand& command, SceneFlags flags)
+{
+    const TextureCapture capture = read_capture(command.replay);
+    SceneData scene = load_for_replay(capture, std::move(flags), command.replay);
+    if (command.is_print) return print_replay(capture, scene, command.replay);
+    std::string node = node_of(command);
+    const CapturedHit& hit = capture.hits.at(0);
+    if (node.empty()) node = hit.results.at(0).node;
+    const int material = scene.triangles.at(size_t(hit.hit.triangle)).material;
+    const DebugStop stop = find_stop_in(scene, node, material, command.line);
+    const std::vector<std::string> program = replay_program(command);
+    if (command.is_vscode)
+        write_launch_file(launch_configuration(command, stop, program));
+    else
+        become(debugger_command(command.debugger, stop, program, command.commands));
+    return 0;
 }
 
 }  // namespace
@@ -224,6 +261,19 @@ DebugStop find_stop(SceneData& scene, const std::string& node, int x, int y, int
             "--pixel {},{}: shows material {}, whose texture nodes are: {}; {} is on: {}", x, y,
             scene.material_names.at(size_t(material)), node_names(scene, material), node,
             materials_of(scene, node)));
+    return find_stop_in(scene, node, material, line);
+}
+
+DebugStop find_stop_in(const SceneData& scene, const std::string& node, int material, int line)
+{
+    const SceneTextures& textures = scene.textures;
+    const auto at = std::ranges::find_if(textures.attachments, [&](const auto& attachment) {
+        return attachment.node == node && attachment.material == material;
+    });
+    if (at == textures.attachments.end())
+        throw std::runtime_error(fmt::format("--texture {}: no such node on material {}; it has {}",
+                                             node, scene.material_names.at(size_t(material)),
+                                             node_names(scene, material)));
     const TextureFunction& function = textures.functions.at(size_t(at->function));
     if (const int lines = lines_of(function.file); line < 0 || line > lines)
         throw std::runtime_error(
@@ -296,13 +346,19 @@ CLI::App* add_debug_command(CLI::App& app, DebugCommand& command)
         ->add_option("--execute", command.commands,
                      "A command for the debugger once it has stopped there; it ends after the last")
         ->allow_extra_args(false);
+    debug->add_option(
+        "--replay", command.replay,
+        "Run the hits of a file that render --capture wrote, instead of a pixel; the "
+        "scene's name may be left out. With --print no debugger starts: what the host "
+        "computes is printed beside what the device gave");
     debug->add_flag("--print", command.is_print,
                     "Print the debugger's command instead of running it");
     debug->add_flag("--vscode", command.is_vscode,
                     "Write the same as a configuration into .vscode/launch.json instead");
-    debug->footer("--texture NODE says where to stop; with a \"=\" in it, it is what it is for "
-                  "render. Compiled without\noptimisation, a texture gives the same bits.\n"
-                  "Exit codes: the debugger's; 2 error.");
+    debug->footer(
+        "--texture NODE says where to stop; with a \"=\" in it, it is what it is for "
+        "render. Compiled without\noptimisation, a texture gives the same bits.\n"
+        "Exit codes: the debugger's; --replay --print: 0 the device's bits, 1 others; 2 error.");
     return debug;
 }
 
@@ -312,6 +368,7 @@ int run_debug_command(const DebugCommand& command)
     SceneFlags flags = command.scene;
     std::erase_if(flags.load.textures,
                   [](const std::string& text) { return text.find('=') == std::string::npos; });
+    if (!command.replay.empty()) return replay(command, std::move(flags));
     const std::optional<Pixel> pixel = parse_pixel(command.pixel, flags.size);
     SceneData scene = load_from_flags(flags);
     const DebugStop stop = find_stop(scene, node_of(command), pixel->x, pixel->y, command.line);

@@ -14,6 +14,7 @@ struct DebugCommand {
     std::string debugger = "gdb";
     std::vector<std::string> commands;  // for the debugger once it has stopped; then it ends
     bool is_print = false;
+    std::string replay;  // a capture, whose hits are run instead of a render
     bool is_vscode = false;
     std::vector<std::string> words;  // of the command line
 };
@@ -36,6 +37,9 @@ struct DebugStop {
 // The stop for the first sample of a pixel: traced on the twin backend. Throws std::runtime_error
 // when the pixel does not show the node.
 DebugStop find_stop(SceneData& scene, const std::string& node, int x, int y, int line);
+
+// Likewise, for a node where the material is known.
+DebugStop find_stop_in(const SceneData& scene, const std::string& node, int material, int line);
 
 // The debugger's whole command line around `program`. `commands`: see DebugCommand.
 std::vector<std::string> debugger_command(const std::string& debugger, const DebugStop& stop,

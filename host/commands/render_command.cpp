@@ -2,6 +2,7 @@
 
 #include "host/commands/picture_flags.hpp"
 #include "host/commands/render_report.hpp"
+#include "host/commands/texture_capture.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -150,6 +151,9 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
     render->add_option(
         "--pixel", command.pixel,
         "Run the paths of one pixel only, X,Y from the upper left, and print its value");
+    render->add_option("--capture", command.capture,
+                       "Keep the pixel's hits on procedural textures, with what the device made of "
+                       "them, for diptych debug --replay");
     add_picture_flags(*render, command.view, command.write);
     add_checkpoint_flags(*render, command.checkpoint);
     render->add_flag("--quiet", command.is_quiet, "Print errors only");
@@ -176,6 +180,12 @@ int run_render_command(const RenderCommand& command)
     if (run.outputs.empty() && wants_picture(run)) run.outputs.push_back("diptych.png");
     for (const std::string& path : run.outputs) image::check_writable(path);
     if (!run.json.empty() && run.json != "-") image::check_file_writable(run.json);
+    if (!run.capture.empty()) {
+        if (run.pixel.empty())
+            throw std::runtime_error("--capture " + run.capture +
+                                     ": of which pixel? add --pixel X,Y");
+        image::check_file_writable(run.capture);
+    }
 
     watch_for_interrupts();
     RenderOptions options;
@@ -235,6 +245,13 @@ int run_render_command(const RenderCommand& command)
     if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
     for (const std::string& path : run.outputs) image::write_picture(path, picture, write);
     if (options.pixel) print_pixel(result.film, *options.pixel);
+    if (!run.capture.empty()) {
+        const TextureCapture capture =
+            capture_textures(*backend, scene, run.scene, run.device.backend, *options.pixel);
+        write_capture(run.capture, capture);
+        if (!run.is_quiet)
+            fmt::print(stderr, "captured {} hits in {}\n", capture.hits.size(), run.capture);
+    }
     const double aim = options.error > 0 ? options.error : 1;
     std::optional<ErrorSummary> error;
     if (result.film.has_standard_error() && !options.pixel)

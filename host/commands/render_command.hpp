@@ -18,6 +18,7 @@ struct RenderCommand {
     ErrorFlags error;
     CheckpointFlags checkpoint;
     std::vector<std::string> outputs;
+    std::string capture;  // file for the pixel's hits on textures
     std::string pixel;
     std::string json;
     std::string refresh;

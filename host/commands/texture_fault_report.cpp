@@ -44,10 +44,7 @@ TextureFaultPlace place_of(const SceneData& scene, const TextureHit& hit,
     const json about = json::parse(function.description, nullptr, false);
     place.line = about.is_object() ? about.value("line", 0) : 0;
     if (kind == TEXTURE_FAULT_BUDGET) place.line = step.fault_line;
-    for (size_t a = 0; a < function.arguments.size(); ++a)
-        place.arguments +=
-            (a == 0 ? "" : ", ") + function.arguments[a].name + " = " +
-            text_of_numbers(step.arguments[a], !function.arguments[a].type.starts_with("float"));
+    place.arguments = arguments_text(function, step);
     return place;
 }
 
@@ -74,6 +71,16 @@ std::optional<TextureFaultPlace> find_first(Backend& backend, SceneData& scene,
 }
 
 }  // namespace
+
+std::string arguments_text(const TextureFunction& function, const TextureStepValue& step)
+{
+    std::string text;
+    for (size_t a = 0; a < function.arguments.size(); ++a)
+        text +=
+            (a == 0 ? "" : ", ") + function.arguments[a].name + " = " +
+            text_of_numbers(step.arguments[a], !function.arguments[a].type.starts_with("float"));
+    return text;
+}
 
 std::string text_of_numbers(const std::vector<double>& numbers, bool is_whole)
 {

@@ -1,6 +1,7 @@
 // What went wrong in textures, told to their authors: node, line, arguments, pixel.
 #pragma once
 
+#include "backends/textures/texture_replay.hpp"
 #include "host/render/texture_faults.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -33,6 +34,9 @@ TextureFaultReport find_texture_faults(Backend& backend, const std::string& name
 // One line for each kind that occurred, in the order of TEXTURE_FAULT_*.
 std::string texture_fault_text(const TextureFaultReport& report, int kind);
 nlohmann::json texture_fault_json(const TextureFaultReport& report);
+
+// "scale = 7, tint = (0.5, 0.75, 1)"
+std::string arguments_text(const TextureFunction& function, const TextureStepValue& step);
 
 // "(1, 2, 3)", or the number alone; of many, the first ones.
 std::string text_of_numbers(const std::vector<double>& numbers, bool is_whole);

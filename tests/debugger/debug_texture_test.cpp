@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 
 using namespace diptych;
 
@@ -203,6 +205,93 @@ TEST_F(DebugTexture, SaysWhyItCannotStop)
     expect_refusal({"--pixel", "12,8", "--texture", "paint", "--debugger", "adb"}, {"adb", "gdb"});
     expect_refusal({"--pixel", "12,8", "--texture", "paint", "--backend", "opencl"}, {"twin"});
     expect_refusal({"--pixel", "40,8", "--texture", "paint"}, {"40,8"});
+}
+
+// Hits of a device, run again on the host.
+class Replay : public DebugTexture {
+protected:
+    Outcome capture(const std::string& backend, const std::string& file = "hits.json")
+    {
+        return run_diptych(with_view({"render", folder_ / "scene.gltf", "--samples", "3", "--pixel",
+                                      "12,8", "--backend", backend, "--capture", file}),
+                           options());
+    }
+    Outcome replay(std::vector<std::string> more)
+    {
+        std::vector<std::string> words = {"debug", "--replay", "hits.json"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_diptych(words, options());
+    }
+    std::string file() const
+    {
+        std::ifstream in(folder_ / "hits.json");
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+};
+
+TEST_F(Replay, HasTheDevicesBits)
+{
+    for (const char* backend : {"twin", "opencl", "cpu", "double"}) {
+        const Outcome captured = capture(backend);
+        if (captured.exit_code == 2 && captured.err.find("OpenCL") != std::string::npos) continue;
+        ASSERT_EQ(captured.exit_code, 0) << captured.text();
+        const Outcome replayed = replay({"--print"});
+        EXPECT_EQ(replayed.exit_code, 0) << replayed.text();
+        EXPECT_NE(replayed.out.find("sample 2 bounce 0: paint: userProc(scale = 7, tint = (0.5, "
+                                    "0.75, 1)) gave ("),
+                  std::string::npos)
+            << replayed.text();
+        EXPECT_NE(replayed.out.find("results have the device's bits"), std::string::npos);
+        EXPECT_NE(replayed.out.find(std::string(" on ") + backend), std::string::npos);
+    }
+}
+
+TEST_F(Replay, StopsInTheDebuggerWithTheDevicesValue)
+{
+    if (const std::string why = why_no_debugger("gdb"); !why.empty()) GTEST_SKIP() << why;
+    const Outcome captured = capture("opencl");
+    if (captured.exit_code == 2) GTEST_SKIP() << captured.err;
+    const Outcome outcome = replay({"--texture", "paint", "--line", at_line("stripe * tint"),
+                                    "--execute", "info args", "--execute", "finish"});
+    EXPECT_NE(outcome.out.find("scale = 7"), std::string::npos) << outcome.text();
+    EXPECT_EQ(vector_after(outcome.out, "Value returned is $1 = "),
+              solo("paint", "12,8", "opencl"));
+}
+
+TEST_F(Replay, SaysWhatIsWrongWithTheFile)
+{
+    const auto expect_refusal = [&](const std::string& says) {
+        const Outcome outcome = replay({"--print"});
+        EXPECT_EQ(outcome.exit_code, 2) << outcome.text();
+        EXPECT_EQ(outcome.err_lines().size(), 1u) << outcome.text();
+        EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
+    };
+    expect_refusal("cannot be read");
+    ASSERT_EQ(capture("twin").exit_code, 0);
+    const std::string whole = file();
+    folder_.write("hits.json", whole.substr(0, whole.size() / 2));
+    expect_refusal("cut short");
+    std::string other = whole;
+    const size_t at = other.find("depth");
+    other[at] = 'D';
+    folder_.write("hits.json", other);
+    expect_refusal("damaged");
+    other = whole;
+    other.replace(other.find("\"version\":1"), 11, "\"version\":9");
+    folder_.write("hits.json", other);
+    expect_refusal("version");
+    folder_.write("hits.json", "{}");
+    expect_refusal("no capture");
+    folder_.write("hits.json", whole);
+    folder_.write("paint.c", painted_source + "// changed\n");
+    std::string changed = painted_source;
+    changed.replace(changed.find("0.25f"), 5, "0.75f");
+    folder_.write("paint.c", changed);
+    expect_refusal("not what was captured");
+    const Outcome no_pixel =
+        run_diptych(with_view({"render", folder_ / "scene.gltf", "--capture", "x"}), options());
+    EXPECT_EQ(no_pixel.exit_code, 2);
+    EXPECT_NE(no_pixel.err.find("--pixel"), std::string::npos) << no_pixel.err;
 }
 
 }  // namespace
