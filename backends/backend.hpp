@@ -43,7 +43,7 @@ struct StageState {
     int bounce;
     int paths;
     std::vector<std::vector<double>> planes;  // empty for rows that no stage so far has defined
-    // After STAGE_evaluate_textures: what it gave, four planes of each result.
+    // What a stage of textures gave, plane by plane: the row texture_row_of(stage).
     std::vector<double> texture_results = {};
 };
 

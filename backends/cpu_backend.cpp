@@ -313,7 +313,7 @@ void CpuBackend::trace(const Dispatch& dispatch,
                        dispatch.paths());
     tracer.run([&](Stage stage, int bounce, std::vector<std::vector<double>> planes) {
         StageState state{stage, bounce, dispatch.paths(), std::move(planes)};
-        if (stage == STAGE_evaluate_textures) state.texture_results = tracer.texture_results();
+        state.texture_results = tracer.texture_results(stage);
         after_stage(state);
     });
 }

@@ -77,7 +77,7 @@ private:
     std::vector<opencl::Buffer> scene_;
     DispatchMemory memory_;
     std::vector<PlaneRow> texture_result_rows_;
-    int texture_results_ = 0;  // planes of row texture_result
+    std::array<int, 2> texture_planes_{};  // of each row
     ProgramSet programs_;
     std::array<StageKernel, STAGE_COUNT> kernels_;
     opencl::Kernel compact_count_;
@@ -137,7 +137,7 @@ void OpenclBackend::upload(SceneData& scene)
     scene_ = upload_scene(context_, queue_, device_, scene);
     build_kernels(scene);
     texture_result_rows_ = texture_result_rows(scene);
-    texture_results_ = texture_planes(scene)[row_texture_result];
+    texture_planes_ = texture_planes(scene);
     memory_ = DispatchMemory(context_, scene, plan(scene).items, device_.group_size);
     for (int k = 0; k < STAGE_COUNT; ++k)
         if (programs_.programs[k] && k != STAGE_compact) bind_buffers(kernels_[k]);
@@ -343,9 +343,10 @@ StageState OpenclBackend::state_after(Stage stage, int bounce)
         }
         state.planes.push_back(std::move(plane));
     }
-    if (stage == STAGE_evaluate_textures) {
-        std::vector<float> results(size_t(texture_results_) * size_t(paths_));
-        queue_.read(memory_.texture_planes[row_texture_result], results.size() * sizeof results[0],
+    if (const int row = texture_row_of(stage); row >= 0) {
+        const size_t planes = size_t(texture_planes_[size_t(row)]);
+        std::vector<float> results(planes * size_t(paths_));
+        queue_.read(memory_.texture_planes[size_t(row)], results.size() * sizeof results[0],
                     results.data());
         state.texture_results.assign(results.begin(), results.end());
     }
@@ -358,6 +359,7 @@ void OpenclBackend::trace(const Dispatch& dispatch,
     begin(dispatch);
     for (const opencl::Buffer& plane : memory_.path_planes)
         queue_.fill(plane, plane.bytes(), sentinel);
+    for (const opencl::Buffer& plane : memory_.texture_planes) queue_.fill(plane, plane.bytes(), 0);
     int live = paths_;
     for (int bounce = 0; live > 0; ++bounce)
         for (int k = 0; k < STAGE_COUNT && live > 0; ++k) {

@@ -83,11 +83,13 @@ StageTracer::Planes StageTracer::planes() const
     return all;
 }
 
-std::vector<double> StageTracer::texture_results() const
+std::vector<double> StageTracer::texture_results(Stage stage) const
 {
     std::vector<double> values;
-    const int count = scene_.textures ? scene_.textures->planes[row_texture_result] : 0;
-    const auto* planes = static_cast<const unsigned char*>(texture_planes_[row_texture_result]);
+    const int row = texture_row_of(stage);
+    if (row < 0 || !scene_.textures) return values;
+    const int count = scene_.textures->planes[row];
+    const auto* planes = static_cast<const unsigned char*>(texture_planes_[size_t(row)]);
     for (int p = 0; p < count; ++p) {
         const size_t first = size_t(p) * size_t(view_.capacity);
         const std::vector<double> plane = kernels_.real_bytes == 8

@@ -21,8 +21,8 @@ public:
     using Planes = std::vector<std::vector<double>>;
     void run(const std::function<void(Stage, int bounce, Planes)>& after_stage);
 
-    // Inside after_stage: what textures gave, plane by plane.
-    std::vector<double> texture_results() const;
+    // Inside after_stage: what the stage gave in planes of TEXTURE_BUFFERS.
+    std::vector<double> texture_results(Stage stage) const;
 
 private:
     void run_stage(Stage stage, int bounce);

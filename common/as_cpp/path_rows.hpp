@@ -4,6 +4,7 @@
 #include "platform.h"
 
 #include "common/buffers.h"
+#include "common/stages/stages.h"
 
 #include <iterator>
 
@@ -35,6 +36,13 @@ enum TextureRowName {
     TEXTURE_BUFFERS(TEXTURE_ROW_NAME)
 #undef TEXTURE_ROW_NAME
 };
+
+// The row of TEXTURE_BUFFERS that a stage writes; -1: none.
+constexpr int texture_row_of(Stage stage)
+{
+    if (stage == STAGE_trace_texture_rays) return row_occlusion_result;
+    return stage == STAGE_evaluate_textures ? int(row_texture_result) : -1;
+}
 
 enum PathRowName {
 #define PATH_ROW_NAME(type, name, life) row_##name,

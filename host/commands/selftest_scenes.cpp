@@ -1,5 +1,6 @@
 #include "host/commands/selftest_scenes.hpp"
 
+#include "common/textures/procedural.h"
 #include "host/scene/scene_builder.hpp"
 
 #include <cmath>
@@ -161,6 +162,72 @@ SceneData row_of_balls()
     return scene.finish();
 }
 
+// A texture as the texture tool writes them, which the self-test does without.
+TextureFunction texture_of(const std::string& id, std::vector<TextureArgument> arguments,
+                           unsigned attributes, const std::string& body)
+{
+    std::string values;
+    for (size_t k = 0; k < arguments.size(); ++k)
+        values += "    const " + arguments[k].type + " " + arguments[k].name + " = tx_argument_" +
+                  arguments[k].type + "(tx, region, " + std::to_string(k) + ");\n";
+    TextureFunction function;
+    function.id = id;
+    function.file = "selftest.c";
+    function.entry = id;
+    function.opencl = "SHARED float4 " + id + "_entry(TextureContext* tx, int region)\n{\n" +
+                      values + body + "}\n";
+    function.cpp = "namespace " + id + " {\n" + function.opencl + "}\n";
+    function.arguments = std::move(arguments);
+    function.attributes = attributes;
+    return function;
+}
+
+// Textures that ask for occlusion, read each other and images, and do what users should not.
+SceneData procedural()
+{
+    SceneBuilder scene;
+    TextureFunction crevices =
+        texture_of("crevices", {{"color", "float3"}}, ATTRIBUTE_TexCoord0 | ATTRIBUTE_TexCoord0Dx,
+                   "    const float open = tx_occlusion(tx, 0);\n"
+                   "    const float2 uv = tx_attribute_TexCoord0(tx);\n"
+                   "    const float blur = tx_attribute_TexCoord0Dx(tx).x;\n"
+                   "    return TX_NEW(float4, color.x * open, color.y * tx_fabs_float(uv.x),\n"
+                   "                  color.z + 0.1f * blur, 1.0f);\n");
+    OcclusionRequest near;
+    near.distance = 0.5;
+    crevices.occlusion = {near};
+    const int waves = scene.add_texture_function(
+        texture_of("waves", {{"under", "float4"}, {"scale", "float"}},
+                   ATTRIBUTE_WorldPos | ATTRIBUTE_Normal | ATTRIBUTE_Tangent,
+                   "    const float3 p = tx_attribute_WorldPos(tx);\n"
+                   "    const float3 n = tx_attribute_Normal(tx);\n"
+                   "    const float3 t = tx_attribute_Tangent(tx);\n"
+                   "    const float w = 0.5f + 0.5f * tx_sin_float(p.x * scale + p.z);\n"
+                   "    float turns = 0.0f;\n"
+                   "    tx->budget = 8;\n"
+                   "    while (tx_spend(tx, 1)) turns += 0.01f * (float)tx_index(tx, 5, 3);\n"
+                   "    return TX_NEW(float4, under.x * w, 0.3f + 0.4f * n.y * n.y,\n"
+                   "                  turns + 0.1f * t.x * t.x, 1.0f);\n"));
+    const int base = scene.add_texture_node({"crevices",
+                                             scene.add_texture_function(crevices),
+                                             {{"color", {.numbers = {0.8, 0.6, 0.4}}}}});
+    TextureUse low, high;
+    low.node = base;
+    high.node = scene.add_texture_node(
+        {"waves", waves, {{"under", {.node = base}}, {"scale", {.numbers = {9}}}}});
+    const int floor = scene.add_material({.base_texture = low, .metallic_roughness_texture = high});
+    const int thing = scene.add_material({.base_texture = high, .specular_color_texture = low});
+    const int lamp = scene.add_material({.emission = {6, 6, 5}});
+    scene.set_textures({.occlusion_rays = 4});
+    scene.place(scene.add_mesh(quad_mesh({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, floor)));
+    scene.place(scene.add_mesh(sphere_mesh({0, 0.5, 0}, 0.5, 24, thing)));
+    scene.place(scene.add_mesh(box_mesh({0.6, 0, -0.4}, {1.1, 0.6, 0.3}, thing)));
+    scene.place(scene.add_mesh(quad_mesh({-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, lamp)));
+    scene.set_camera({.eye = {0.5, 1.4, 3}, .target = {0, 0.3, 0}});
+    scene.set_picture_size(picture_size, picture_size);
+    return scene.finish();
+}
+
 }  // namespace
 
 std::vector<SelftestScene> selftest_scenes()
@@ -169,6 +236,7 @@ std::vector<SelftestScene> selftest_scenes()
     scenes.push_back({"everything at once", everything()});
     scenes.push_back({"matte room, orthographic", matte_room()});
     scenes.push_back({"balls under a sky", row_of_balls()});
+    scenes.push_back({"procedural textures", procedural()});
     return scenes;
 }
 

@@ -191,6 +191,29 @@ bool compare_path(const StageComparison& states, const StageState& a, unsigned e
     return true;
 }
 
+// The same for what a stage of textures gave, which lies in no row of the path. What it did not
+// write is zero, or from an earlier bounce, on both.
+bool compare_textures(const StageState& a, const StageState& b, int p, const Bound& bound,
+                      TraceComparison& comparison)
+{
+    StageTally& tally = comparison.stages[a.stage];
+    if (a.planes[row_hit_triangle][size_t(p)] < 0) return true;
+    for (size_t k = size_t(p); k < std::min(a.texture_results.size(), b.texture_results.size());
+         k += size_t(a.paths)) {
+        const double x = a.texture_results[k], y = b.texture_results[k];
+        const double ulps = ulps_between(x, y);
+        ++tally.values;
+        tally.largest_ulps = std::max(tally.largest_ulps, ulps);
+        if (is_within(x, y, ulps, std::max(std::abs(x), std::abs(y)), bound)) continue;
+        if (!comparison.first)
+            comparison.first =
+                Divergence{a.stage, a.bounce, p, "what textures are given", -1, x, y};
+        ++tally.parted;
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 std::string Bound::text() const
@@ -243,7 +266,8 @@ TraceComparison compare_traces(Backend& a, Backend& b, unsigned effects, const D
                                      b_before);
         for (int p = 0; p < dispatch.paths(); ++p) {
             if (!is_alive[size_t(p)] || comparison.has_parted[size_t(p)]) continue;
-            if (!compare_path(states, other, effects, p, bound, comparison))
+            if (!compare_path(states, other, effects, p, bound, comparison) ||
+                !compare_textures(other, state, p, bound, comparison))
                 comparison.has_parted[size_t(p)] = 1;
             is_alive[size_t(p)] = other.planes[row_depth][size_t(p)] >= 0;
         }

@@ -25,7 +25,7 @@ TEST(Selftest, ScenesTogetherCallForEveryEffect)
 #define ADD_EFFECT(name, bit, words) all |= EFFECT_##name;
     EFFECTS_LIST(ADD_EFFECT)
 #undef ADD_EFFECT
-    EXPECT_EQ(effects, all & ~(EFFECT_PROCEDURAL | EFFECT_TEXTURE_OCCLUSION));
+    EXPECT_EQ(effects, all);
 }
 
 TEST(Selftest, PassesTheProcessorsBackends)
@@ -38,8 +38,8 @@ TEST(Selftest, PassesTheProcessorsBackends)
 TEST(Selftest, HasARowForEveryStage)
 {
     const SelftestResult result = test_of("cpu");
-    // compact and accumulate are one; two stages run for users' textures alone
-    EXPECT_EQ(result.stages.size(), size_t(STAGE_COUNT) - 3);
+    // compact and accumulate are one
+    EXPECT_EQ(result.stages.size(), size_t(STAGE_COUNT) - 1);
     for (const StageVerdict& row : result.stages) EXPECT_GT(row.tally.values, 0) << row.stage;
 }
 
