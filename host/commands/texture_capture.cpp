@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -33,7 +34,11 @@ std::string textures_hash(const SceneData& scene)
         hash.add(scene.name.data(), scene.name.size() * sizeof(type));
     SCENE_BUFFERS(ADD_BUFFER)
 #undef ADD_BUFFER
-    for (const TextureFunction& function : scene.textures.functions) hash.add(function.cpp);
+    for (const TextureFunction& function : scene.textures.functions) {
+        std::istringstream text(function.cpp);
+        for (std::string line; std::getline(text, line);)  // files' names say how they were found
+            if (!line.starts_with("#line")) hash.add(line + "\n");
+    }
     return hash.finish();
 }
 
