@@ -4,7 +4,7 @@
 #include "backends/kernel_sources.hpp"
 #include "backends/opencl_memory.hpp"
 #include "backends/opencl_programs.hpp"
-#include "common/as_cpp/path_rows.hpp"
+#include "common/as_cpp/texture_rows.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 #include "kernels_cpu/stage_tracer.hpp"
 
 #include "common/as_cpp/path_rows.hpp"
+#include "common/as_cpp/texture_rows.hpp"
 #include "kernels_cpu/bounce_stages.hpp"
 #include "kernels_cpu/texture_rays.hpp"
 

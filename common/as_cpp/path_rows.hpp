@@ -4,7 +4,6 @@
 #include "platform.h"
 
 #include "common/buffers.h"
-#include "common/stages/stages.h"
 
 #include <iterator>
 
@@ -30,19 +29,6 @@ inline constexpr int path_row_count = int(std::size(path_rows));
 #define COUNT_TEXTURE_ROW(type, name) +1
 inline constexpr int texture_rows = 0 TEXTURE_BUFFERS(COUNT_TEXTURE_ROW);
 #undef COUNT_TEXTURE_ROW
-
-enum TextureRowName {
-#define TEXTURE_ROW_NAME(type, name) row_##name,
-    TEXTURE_BUFFERS(TEXTURE_ROW_NAME)
-#undef TEXTURE_ROW_NAME
-};
-
-// The row of TEXTURE_BUFFERS that a stage writes; -1: none.
-constexpr int texture_row_of(Stage stage)
-{
-    if (stage == STAGE_trace_texture_rays) return row_occlusion_result;
-    return stage == STAGE_evaluate_textures ? int(row_texture_result) : -1;
-}
 
 enum PathRowName {
 #define PATH_ROW_NAME(type, name, life) row_##name,
