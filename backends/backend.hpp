@@ -73,6 +73,7 @@ struct BackendOptions {
     bool debug_kernels = false;   // twin: the library built for a debugger
     bool debug_textures = false;  // compile procedural textures for a debugger
     std::string generated_dir;    // also write the generated code of textures there
+    std::string use_generated;    // run the (edited) code of textures that lies there instead
     std::string plant_fault;      // tests: name of a planted fault, see kernels_cl/faults.h
 };
 
@@ -85,6 +86,13 @@ public:
     // Completes the scene with the trees that the device walks, if it does. The scene must outlive
     // the backend's use of it.
     virtual void upload(SceneData& scene) = 0;
+
+    // After upload(), of the same scene, in which nothing else has changed. The materials and the
+    // arguments of textures behind them, as many as there were: moves bytes, compiles nothing.
+    virtual void update_materials(const SceneData& scene) = 0;
+    // The texture stage anew, from other texts of the same functions (same arguments, attributes
+    // and requests). Throws like upload(); the backend then goes on with the stage it had.
+    virtual void update_textures(const SceneData& scene) = 0;
 
     // Runs every stage for every path. The result of an item does not depend on what else is in the
     // dispatch. Adding samples to a result entry goes in ascending order, from zero (ids from -1).

@@ -62,6 +62,8 @@ public:
     }
 
     void upload(SceneData& scene) override;
+    void update_materials(const SceneData& scene) override;
+    void update_textures(const SceneData& scene) override;
     void render(const Dispatch& dispatch, Results& results) override;
     void trace(const Dispatch& dispatch,
                const std::function<void(const StageState&)>& after_stage) override;
@@ -203,17 +205,32 @@ void CpuBackend::build_embree(const SceneData& scene)
 
 void CpuBackend::build_textures(const SceneData& scene)
 {
-    scene_view_.textures = nullptr;
-    if ((scene.effects & EFFECT_PROCEDURAL) == 0) return;
+    if ((scene.effects & EFFECT_PROCEDURAL) == 0) {
+        scene_view_.textures = nullptr;
+        return;
+    }
     NativeStageOptions options;
     options.kind = kernels_.real_bytes == 8 ? NativeStageKind::reference
                    : uses_embree_           ? NativeStageKind::vector
                                             : NativeStageKind::scalar;
     options.is_debug = options_.debug_textures;
     options.generated_dir = options_.generated_dir;
-    textures_ = std::make_unique<NativeStage>(scene, options);
+    options.use_generated = options_.use_generated;
+    auto stage = std::make_unique<NativeStage>(scene, options);
+    chunks_.clear();  // they run the old one
+    textures_ = std::move(stage);
     scene_view_.textures = &textures_->kernels();
 }
+
+// The kernels read the scene where the host has it.
+void CpuBackend::update_materials(const SceneData& scene)
+{
+    scene_ = &scene;
+    bind(scene);
+    add_neutral(scene);
+}
+
+void CpuBackend::update_textures(const SceneData& scene) { build_textures(scene); }
 
 PathView CpuBackend::view_results(const Dispatch& dispatch)
 {

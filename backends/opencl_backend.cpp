@@ -44,6 +44,8 @@ public:
     std::string description() const override;
     Plan plan(const SceneData& scene) const override;
     void upload(SceneData& scene) override;
+    void update_materials(const SceneData& scene) override;
+    void update_textures(const SceneData& scene) override;
     void render(const Dispatch& dispatch, Results& results) override;
     void trace(const Dispatch& dispatch,
                const std::function<void(const StageState&)>& after_stage) override;
@@ -57,6 +59,7 @@ private:
     };
 
     void build_kernels(const SceneData& scene);
+    void make_kernel(Stage stage);
     void bind_buffers(StageKernel& stage);
     void begin(const Dispatch& dispatch);
     void run(Stage stage, int count, bool is_compacted);
@@ -105,6 +108,18 @@ const int first_header = [] {
 enum Header { ITEMS, LIVE, CAPACITY, RESULTS, SAMPLES, PIXEL_SHIFT, FIRST, COUNT, IS_COMPACTED };
 int argument(Header header) { return first_header + header; }
 
+// Place of a row among SCENE_BUFFERS.
+int scene_row(const char* wanted)
+{
+    int row = 0, found = 0;
+#define FIND_ROW(type, name)                          \
+    if (std::strcmp(#name, wanted) == 0) found = row; \
+    ++row;
+    SCENE_BUFFERS(FIND_ROW)
+#undef FIND_ROW
+    return found;
+}
+
 constexpr int sentinel = int(0xcdcdcdcd);  // trace(): marks what no stage has written
 
 OpenclBackend::OpenclBackend(const BackendOptions& options)
@@ -145,16 +160,40 @@ void OpenclBackend::upload(SceneData& scene)
     statistics_.setup_seconds = elapsed.count();
 }
 
+void OpenclBackend::update_materials(const SceneData& scene)
+{
+    const opencl::Buffer& buffer = scene_[size_t(scene_row("materials"))];
+    const size_t bytes = scene.materials.size() * sizeof scene.materials[0];
+    if (bytes != buffer.bytes())
+        throw std::runtime_error("opencl: the materials have changed in number; upload the scene");
+    queue_.write(buffer, bytes, scene.materials.data());
+    queue_.finish();
+}
+
+void OpenclBackend::update_textures(const SceneData& scene)
+{
+    if (!is_active(STAGE_evaluate_textures, effects_)) return;
+    programs_.programs[STAGE_evaluate_textures] =
+        build_texture_program(context_, device_, options_, scene, cache_);
+    make_kernel(STAGE_evaluate_textures);
+    bind_buffers(kernels_[STAGE_evaluate_textures]);
+}
+
+// Every kernel of a stage's program that is launched by itself; those of the compaction are not.
+void OpenclBackend::make_kernel(Stage stage)
+{
+    const opencl::Program& program = *programs_.programs[stage];
+    kernels_[stage].kernel = opencl::Kernel(program, std::string(stage_names[stage]) + "_entry");
+    kernels_[stage].seconds_per_path = 0;
+}
+
 void OpenclBackend::build_kernels(const SceneData& scene)
 {
     effects_ = scene.effects;
     programs_ = build_programs(context_, device_, options_, scene, cache_);
-    for (int k = 0; k < STAGE_COUNT; ++k) {
-        const std::optional<opencl::Program>& program = programs_.programs[k];
-        if (program && k != STAGE_compact)
-            kernels_[k].kernel = opencl::Kernel(*program, std::string(stage_names[k]) + "_entry");
-        kernels_[k].seconds_per_path = 0;
-    }
+    for (int k = 0; k < STAGE_COUNT; ++k)
+        if (programs_.programs[k] && k != STAGE_compact) make_kernel(Stage(k));
+    kernels_[STAGE_compact].seconds_per_path = 0;
     const opencl::Program& compaction = *programs_.programs[STAGE_compact];
     compact_count_ = opencl::Kernel(compaction, "compact_count");
     compact_scan_ = opencl::Kernel(compaction, "compact_scan");

@@ -25,7 +25,9 @@ std::string fault_option(const std::string& fault)
 std::string source_for(Stage stage, const BackendOptions& options, const SceneData& scene)
 {
     std::string source = kernel_source(stage);
-    if (stage == STAGE_evaluate_textures) source = opencl_texture_program(scene, source);
+    if (stage == STAGE_evaluate_textures)
+        source =
+            opencl_texture_program(scene, source, {options.generated_dir, options.use_generated});
     const std::string exact = "FP_CONTRACT OFF";
     const size_t at = source.find(exact);
     if (options.fast_math && at != std::string::npos)
@@ -66,6 +68,13 @@ Built build(const opencl::Context& context, const DeviceInfo& device, const std:
     return built;
 }
 
+void store(const Built& built, Stage stage, ProgramCache& cache)
+{
+    if (built.new_binary.empty()) return;
+    if (stage == STAGE_evaluate_textures) count_texture_compilation();
+    cache.store(built.key, built.new_binary);
+}
+
 }  // namespace
 
 std::string program_options(const DeviceInfo& device, const BackendOptions& options,
@@ -102,16 +111,22 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
     for (int k = 0; k < STAGE_COUNT; ++k) {
         if (!jobs[k].valid()) continue;
         Built built = jobs[k].get();
-        if (built.new_binary.empty()) {
-            ++set.from_cache;
-        } else {
-            ++set.compiled;
-            if (Stage(k) == STAGE_evaluate_textures) count_texture_compilation();
-            cache.store(built.key, built.new_binary);
-        }
+        ++(built.new_binary.empty() ? set.from_cache : set.compiled);
+        store(built, Stage(k), cache);
         set.programs[k] = std::move(built.program);
     }
     return set;
+}
+
+opencl::Program build_texture_program(const opencl::Context& context, const DeviceInfo& device,
+                                      const BackendOptions& options, const SceneData& scene,
+                                      ProgramCache& cache)
+{
+    const Stage stage = STAGE_evaluate_textures;
+    Built built = build(context, device, source_for(stage, options, scene),
+                        program_options(device, options, scene.effects), stage_names[stage], cache);
+    store(built, stage, cache);
+    return std::move(*built.program);
 }
 
 }  // namespace diptych

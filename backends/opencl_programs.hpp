@@ -27,4 +27,9 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
                           const BackendOptions& options, const SceneData& scene,
                           ProgramCache& cache);
 
+// That of the texture stage alone.
+opencl::Program build_texture_program(const opencl::Context& context, const DeviceInfo& device,
+                                      const BackendOptions& options, const SceneData& scene,
+                                      ProgramCache& cache);
+
 }  // namespace diptych

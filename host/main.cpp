@@ -8,6 +8,7 @@
 #include "host/commands/render_command.hpp"
 #include "host/commands/selftest_command.hpp"
 #include "host/commands/texture_command.hpp"
+#include "host/commands/watch_command.hpp"
 #include "host/image/compare_cli.hpp"
 
 #include <CLI/CLI.hpp>
@@ -58,6 +59,9 @@ int run(int count, char** arguments)
     const CLI::App* merge_command = add_merge_command(app, merge);
     FarmCommand farm;
     const CLI::App* farm_command = add_farm_command(app, farm);
+    WatchCommand watch;
+    watch.render.command_line = render.command_line;
+    const CLI::App* watch_command = add_watch_command(app, watch);
     CompareBackendsCommand compare;
     CLI::App* compare_command = image::add_compare_command(app, compare.compare);
     add_compare_backends_flags(*compare_command, compare);
@@ -80,6 +84,7 @@ int run(int count, char** arguments)
     if (render_command->parsed()) return run_render_command(render);
     if (merge_command->parsed()) return run_merge_command(merge);
     if (farm_command->parsed()) return run_farm_command(farm);
+    if (watch_command->parsed()) return run_watch_command(watch);
     if (explain_command->parsed()) return run_explain_command(explain);
     if (devices_command->parsed()) return run_devices_command();
     if (selftest_command->parsed()) return run_selftest_command(selftest);

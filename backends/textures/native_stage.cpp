@@ -184,12 +184,11 @@ NativeStage::NativeStage(const SceneData& scene, const NativeStageOptions& optio
 {
     const std::string program = compiler();
     const std::vector<std::string> flags = flags_for(options);
-    const std::string functions = cpp_texture_functions(scene);
+    const std::string functions =
+        cpp_texture_functions(scene, {options.generated_dir, options.use_generated});
     const std::string key = key_of(program, flags, functions);
     const fs::path folder = cache_folder() / "textures" / key.substr(0, 32);
     const fs::path object = folder / "stage.so";
-    if (!options.generated_dir.empty())
-        write_text(fs::path(options.generated_dir) / "functions.hpp", functions);
     if (!is_whole(object)) {
         write_headers(folder / "headers");
         write_text(folder / "functions.hpp", functions);

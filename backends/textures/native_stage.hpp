@@ -16,7 +16,8 @@ enum class NativeStageKind { vector, scalar, reference };
 struct NativeStageOptions {
     NativeStageKind kind = NativeStageKind::scalar;
     bool is_debug = false;      // not optimised; the same bits
-    std::string generated_dir;  // also write the generated files there
+    std::string generated_dir;  // also write the generated code there
+    std::string use_generated;  // compile the (edited) code that lies there instead
 };
 
 // A loaded stage. Its code stays as long as this lives.

@@ -2,6 +2,7 @@
 // user function, and what the scene's graph needs at run time. Plain data.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct TextureFunction {
     std::string id;     // in generated code
     std::string file;   // as the user named it
     std::string entry;  // the user's own name of it
+    std::string asked;  // the name that the scene gave; empty: it left the choice to the tool
     std::string cpp;    // for namespace user_language
     std::string opencl;
     std::vector<TextureArgument> arguments;
@@ -60,10 +62,20 @@ struct TextureAttachment {
     int function = 0;
     int first_word = 0;  // in the words of the materials
     int words = 0;       // in whole pages
+    int node_id = 0;     // in SceneTextures::nodes
+};
+
+// A node of the graph as it was asked for: its arguments' values in JSON, from the scene, the
+// command line or the file's comments.
+struct TextureNodeValues {
+    std::string name;
+    int function = 0;
+    std::map<std::string, std::string> values;
 };
 
 struct SceneTextures {
     std::vector<TextureFunction> functions;
+    std::vector<TextureNodeValues> nodes;
     std::vector<TextureAttachment> attachments;
     unsigned attributes = 0;    // of all functions
     int slots = 1;              // of the interpreter's stack

@@ -8,10 +8,19 @@
 
 namespace diptych {
 
-// In C++: the functions' texts, one after the other, and the macros.
-std::string cpp_texture_functions(const SceneData& scene);
+// Where people find the generated code, and change it. Empty: nowhere.
+struct GeneratedFolders {
+    std::string write;  // functions.hpp (C++) and functions.cl (OpenCL) are written there too
+    std::string use;    // and taken from here, instead of what was generated
+};
 
-// The OpenCL program of the stage. `stage`: its flattened source, with the pragma in it.
-std::string opencl_texture_program(const SceneData& scene, const std::string& stage);
+// In C++: the functions' texts, one after the other, and the macros. Throws std::runtime_error when
+// a folder cannot be written, or lacks the file, or holds that of other textures.
+std::string cpp_texture_functions(const SceneData& scene, const GeneratedFolders& folders = {});
+
+// The OpenCL program of the stage. `stage`: its flattened source, with the pragma in it. Throws
+// likewise.
+std::string opencl_texture_program(const SceneData& scene, const std::string& stage,
+                                   const GeneratedFolders& folders = {});
 
 }  // namespace diptych

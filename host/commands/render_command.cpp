@@ -22,15 +22,6 @@ std::atomic<bool> is_interrupted{false};
 
 extern "C" void on_interrupt(int) { is_interrupted = true; }
 
-// Asked to stop twice, the program does so at once.
-void watch_for_interrupts()
-{
-    struct sigaction action = {};
-    action.sa_handler = on_interrupt;
-    action.sa_flags = SA_RESETHAND;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to tell
 }
 
 void print_pixel(const Film& film, const Pixel& pixel)
@@ -110,7 +101,26 @@ std::string fault_text(const Faults& faults, const std::optional<FaultPlace>& pl
     return text;
 }
 
+// A slice or a pixel is not one to look at, unless a file is named for it.
+bool wants_picture(const RenderCommand& command)
+{
+    return command.pixel.empty() &&
+           (command.checkpoint.range.empty() || command.checkpoint.file.empty());
+}
+
 }  // namespace
+
+// Asked to stop twice, the program does so at once.
+const std::atomic<bool>& watch_for_interrupts()
+{
+    struct sigaction action = {};
+    action.sa_handler = on_interrupt;
+    action.sa_flags = SA_RESETHAND;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to tell
+    return is_interrupted;
+}
 
 std::optional<Pixel> parse_pixel(const std::string& text, const std::string& size)
 {
@@ -126,22 +136,23 @@ std::optional<Pixel> parse_pixel(const std::string& text, const std::string& siz
     return pixel;
 }
 
-// A slice or a pixel is not one to look at, unless a file is named for it.
-bool wants_picture(const RenderCommand& command)
+void add_output_flags(CLI::App& app, RenderCommand& command)
 {
-    return command.pixel.empty() &&
-           (command.checkpoint.range.empty() || command.checkpoint.file.empty());
+    app.add_option("-o,--output", command.outputs,
+                   "Picture to write: .exr holds every layer, .png .jpg .tif the view. May be "
+                   "given more than once. Default: diptych.png")
+        ->allow_extra_args(false);
+    add_picture_flags(app, command.view, command.write);
+    app.add_flag("--quiet", command.is_quiet, "Print errors only");
+    app.add_flag("--reproducible", command.is_reproducible,
+                 "Leave times, device and command line out of the pictures");
 }
 
 CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
 {
     CLI::App* render = app.add_subcommand("render", "Render a scene to pictures");
     add_scene_flags(*render, command.scene);
-    render
-        ->add_option("-o,--output", command.outputs,
-                     "Picture to write: .exr holds every layer, .png .jpg .tif the view. May be "
-                     "given more than once. Default: diptych.png")
-        ->allow_extra_args(false);
+    add_output_flags(*render, command);
     add_device_flags(*render, command.device);
     add_error_flags(*render, command.error);
     render->add_flag("--audit", command.is_audited,
@@ -154,14 +165,10 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
     render->add_option("--capture", command.capture,
                        "Keep the pixel's hits on procedural textures, with what the device made of "
                        "them, for diptych debug --replay");
-    add_picture_flags(*render, command.view, command.write);
     add_checkpoint_flags(*render, command.checkpoint);
-    render->add_flag("--quiet", command.is_quiet, "Print errors only");
     render->add_flag(
         "--strict", command.is_strict,
         "Make a sample or a texture's result that is not finite an error instead of going on");
-    render->add_flag("--reproducible", command.is_reproducible,
-                     "Leave times, device and command line out of the pictures");
     render->add_option("--json", command.json,
                        "Write a report: times by stage, rays, memory, effects, SHA-256 of every "
                        "layer. - is standard output");

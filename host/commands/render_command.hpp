@@ -7,6 +7,7 @@
 #include "host/image/image.hpp"
 #include "host/render/render.hpp"
 
+#include <atomic>
 #include <optional>
 #include <vector>
 
@@ -33,6 +34,11 @@ struct RenderCommand {
 
 // "12,20": a pixel of a picture of that size; none for an empty text. Throws std::runtime_error.
 std::optional<Pixel> parse_pixel(const std::string& text, const std::string& size);
+
+// Flags of the pictures to write, for every command that renders to files.
+void add_output_flags(CLI::App& app, RenderCommand& command);
+// True once SIGINT or SIGTERM has come.
+const std::atomic<bool>& watch_for_interrupts();
 
 CLI::App* add_render_command(CLI::App& app, RenderCommand& command);
 

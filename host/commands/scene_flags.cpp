@@ -208,6 +208,8 @@ void add_device_options(CLI::App& app, DeviceFlags& flags)
                  "Compile procedural textures for a debugger; the same picture, slowly");
     app.add_option("--generated-dir", flags.options.generated_dir,
                    "Also write the code that is generated for procedural textures to this folder");
+    app.add_option("--use-generated", flags.options.use_generated,
+                   "Run the edited copy of that code in this folder instead");
 }
 
 SceneData load_from_flags(const SceneFlags& flags)

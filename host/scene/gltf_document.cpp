@@ -49,14 +49,7 @@ unsigned word(const std::vector<std::uint8_t>& bytes, size_t at)
            unsigned(bytes[at + 3]) << 24;
 }
 
-// The chunks of a .glb file.
-struct Container {
-    std::string text;
-    std::vector<std::uint8_t> binary;
-    bool has_binary = false;
-};
-
-Container opened_glb(const std::vector<std::uint8_t>& bytes)
+GltfContainer opened_glb(const std::vector<std::uint8_t>& bytes)
 {
     if (bytes.size() < 20) {
         throw SceneError("header: the file is truncated; copy it again");
@@ -73,7 +66,7 @@ Container opened_glb(const std::vector<std::uint8_t>& bytes)
                                      "copy it again",
                                      length, bytes.size()));
     }
-    Container result;
+    GltfContainer result;
     size_t at = 12;
     for (int chunk = 0; at + 8 <= length; ++chunk) {
         const size_t size = word(bytes, at);
@@ -97,24 +90,6 @@ Container opened_glb(const std::vector<std::uint8_t>& bytes)
         at += 8 + size;
     }
     return result;
-}
-
-Container opened(const fs::path& file)
-{
-    std::vector<std::uint8_t> bytes = read_file(file, "file");
-    if (bytes.empty()) {
-        throw SceneError("file: is empty; name a glTF file");
-    }
-    if (bytes.size() >= 4 && std::equal(bytes.begin(), bytes.begin() + 4, "glTF")) {
-        return opened_glb(bytes);
-    }
-    const auto first = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t c) {
-        return !std::isspace(c) && c != 0xef && c != 0xbb && c != 0xbf;
-    });
-    if (first == bytes.end() || *first != '{') {
-        throw SceneError("file: neither JSON nor a .glb container; name a glTF 2.0 file");
-    }
-    return {std::string(bytes.begin(), bytes.end()), {}, false};
 }
 
 json parsed(const std::string& text)
@@ -189,11 +164,29 @@ json procedural(const json& holder)
 
 }  // namespace
 
+GltfContainer open_gltf(const fs::path& file)
+{
+    std::vector<std::uint8_t> bytes = read_file(file, "file");
+    if (bytes.empty()) {
+        throw SceneError("file: is empty; name a glTF file");
+    }
+    if (bytes.size() >= 4 && std::equal(bytes.begin(), bytes.begin() + 4, "glTF")) {
+        return opened_glb(bytes);
+    }
+    const auto first = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t c) {
+        return !std::isspace(c) && c != 0xef && c != 0xbb && c != 0xbf;
+    });
+    if (first == bytes.end() || *first != '{') {
+        throw SceneError("file: neither JSON nor a .glb container; name a glTF 2.0 file");
+    }
+    return {std::string(bytes.begin(), bytes.end()), {}, false};
+}
+
 GltfDocument::GltfDocument(const fs::path& file, bool allow_outside)
     : folder_(file.has_parent_path() ? file.parent_path() : fs::path(".")),
       allow_outside_(allow_outside)
 {
-    Container container = opened(file);
+    GltfContainer container = open_gltf(file);
     has_binary_chunk_ = container.has_binary;
     binary_chunk_ = std::move(container.binary);
     parse(container.text);

@@ -27,6 +27,15 @@ struct StoredImage {
     std::string where;  // for errors
 };
 
+// The chunks of a .glb file, or the text of a .gltf file.
+struct GltfContainer {
+    std::string text;
+    std::vector<std::uint8_t> binary;
+    bool has_binary = false;
+};
+// Told apart by the first bytes. Throws SceneError.
+GltfContainer open_gltf(const std::filesystem::path& file);
+
 class GltfDocument {
 public:
     // Reads .gltf and .glb, told apart by their first bytes. URIs may not leave the file's folder

@@ -2,6 +2,7 @@
 #include "host/scene/gltf_loader.hpp"
 
 #include "backends/textures/texture_tool.hpp"
+#include "host/scene/texture_arguments.hpp"
 #include "host/scene/texture_solo.hpp"
 #include "host/scene/uri.hpp"
 
@@ -116,6 +117,7 @@ public:
         TextureFunction function;
         try {
             function = translate_texture({entry.file, shown, entry.function, id});
+            function.asked = entry.function;
         } catch (const std::runtime_error& error) {
             throw SceneError(fmt::format("texture node {}: {}", entry.name, error.what()));
         }
@@ -285,15 +287,8 @@ private:
     void read_value(const std::string& flag)
     {
         const std::string where = "--set " + printable(flag);
-        const size_t equals = flag.find('=');
-        const size_t dot = flag.rfind('.', equals);
-        if (equals == std::string::npos || dot == std::string::npos)
-            fail(where, "not a value; give NODE.ARGUMENT=JSON, as rust.scale=2.5");
-        const int node = node_named(flag.substr(0, dot), where);
-        const json value = json::parse(flag.substr(equals + 1), nullptr, false);
-        if (value.is_discarded())
-            fail(where, "its value is not JSON; give a number, [1, 2, 3], or {\"node\": \"name\"}");
-        entries_[size_t(node)].arguments[flag.substr(dot + 1, equals - dot - 1)] = value;
+        const TextureValue set = parse_texture_value(flag, where);
+        entries_[size_t(node_named(set.node, where))].arguments[set.argument] = set.value;
     }
 
     GltfDocument& document_;
@@ -310,7 +305,9 @@ TextureInput GltfLoader::texture_input(const nlohmann::json& value, const Textur
                                        const std::string& where, int depth) const
 {
     TextureInput input;
-    if (value.is_array()) {
+    if (const auto numbers = constant_numbers(value, where)) {
+        input.numbers = *numbers;
+    } else if (value.is_array()) {
         if (depth > 1) fail(where, "is nested too deeply; give an array of numbers or of vectors");
         for (const json& element : value) {
             const TextureInput one = texture_input(element, reader, where, depth + 1);
@@ -322,7 +319,7 @@ TextureInput GltfLoader::texture_input(const nlohmann::json& value, const Textur
     } else if (value.is_object() && value.contains("node")) {
         expect_object(value, where, {"node"});
         input.node = reader.node_named(value["node"], where);
-    } else if (value.is_object()) {
+    } else {
         expect_object(value, where, {"texture", "colorSpace"});
         const json texture = value.value("texture", json());
         if (!texture.is_number_unsigned() || texture.get<std::uint64_t>() >= model_.textures.size())
@@ -333,8 +330,6 @@ TextureInput GltfLoader::texture_input(const nlohmann::json& value, const Textur
             fail(where + ".colorSpace", "must be srgb or linear");
         input.is_linear = space == "linear";
         input.images.push_back(texture_use(texture.get<int>(), 0, {}));
-    } else {
-        input.numbers.push_back(number_in(value, where));
     }
     return input;
 }
@@ -348,15 +343,17 @@ void GltfLoader::add_textures()
         TextureNode node;
         node.name = entry.name;
         node.function = reader.function_of(entry, scene_);
-        for (const auto& [name, value] : entry.arguments.items())
+        const auto give = [&](const std::string& name, const json& value, const char* what) {
             node.arguments[name] = texture_input(
                 value, reader,
-                fmt::format("texture node {}: argument {}", entry.name, printable(name)), 0);
+                fmt::format("texture node {}: {} {}", entry.name, what, printable(name)), 0);
+            node.values[name] = dumped(value);
+        };
+        for (const auto& [name, value] : entry.arguments.items()) give(name, value, "argument");
         for (const auto& [name, text] : reader.defaults_of(node.function)) {
             const json value = json::parse(text, nullptr, false);
-            if (node.arguments.count(name) || value.is_discarded()) continue;
-            node.arguments[name] = texture_input(
-                value, reader, fmt::format("texture node {}: default of {}", entry.name, name), 0);
+            if (!node.arguments.count(name) && !value.is_discarded())
+                give(name, value, "default of");
         }
         texture_nodes_.push_back(std::move(node));
     }

@@ -47,6 +47,7 @@ struct TextureNode {
     std::string name{};
     int function = 0;  // of add_texture_function()
     std::map<std::string, TextureInput> arguments{};
+    std::map<std::string, std::string> values{};  // the same in JSON, where they come from there
 };
 
 // For all procedural textures of a scene.

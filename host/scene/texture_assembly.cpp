@@ -1,6 +1,7 @@
 // Procedural textures: which are used and what they ask of the scene, and the pages behind the
 // materials with their programs and arguments (common/textures/procedural.h).
 #include "host/scene/scene_assembly.hpp"
+#include "host/scene/texture_arguments.hpp"
 #include "host/scene/texture_graph.hpp"
 
 #include "common/textures/procedural.h"
@@ -17,12 +18,6 @@ namespace {
 
 constexpr size_t page_words = sizeof(Material) / sizeof(uint);
 constexpr int request_words = 4;
-
-// Words from one element of an array to the next: those of three take four.
-int stride_of(const TextureArgument& argument)
-{
-    return width_of(argument) == 3 ? 4 : width_of(argument);
-}
 
 // The words of the materials' buffer behind the materials, page by page.
 class Pages {
@@ -68,94 +63,6 @@ private:
 [[noreturn]] void fail(const TextureNode& node, const std::string& what)
 {
     throw SceneError(fmt::format("texture node {}: {}", node.name, what));
-}
-
-std::string argument_names(const TextureFunction& function)
-{
-    std::string names;
-    for (const TextureArgument& argument : function.arguments)
-        names += (names.empty() ? "" : ", ") + type_of(argument) + " " + argument.name;
-    return names.empty() ? "none" : names;
-}
-
-void check_numbers(const TextureNode& node, const TextureArgument& argument,
-                   const TextureInput& value)
-{
-    const std::string at = fmt::format("its argument {} ", argument.name);
-    const size_t width = size_t(width_of(argument));
-    const size_t count = value.numbers.size();
-    if (!value.images.empty() || value.node >= 0)
-        fail(node, at + fmt::format("is of type {}; give it numbers", type_of(argument)));
-    if (argument.is_array ? count == 0 || count % width != 0 : count != width)
-        fail(node,
-             at + fmt::format("is of type {}, but has {} numbers; give it {}", type_of(argument),
-                              count, argument.is_array ? "whole elements" : std::to_string(width)));
-    if (argument.is_array && argument.length > 0 && count / width != size_t(argument.length))
-        fail(node, at + fmt::format("has {} elements; the function wants {}", count / width,
-                                    argument.length));
-    const bool is_whole = argument.type.starts_with("int") || argument.type.starts_with("uint");
-    const double low = argument.type.starts_with("uint") ? 0 : -2147483648.0;
-    const double high = argument.type.starts_with("uint") ? 4294967295.0 : 2147483647.0;
-    for (const double x : value.numbers) {
-        if (is_whole && !(x == std::floor(x) && x >= low && x <= high))
-            fail(node,
-                 at + fmt::format("is of type {}; {} is not such a number", argument.type, x));
-        if (!is_whole && !std::isfinite(float(x)))
-            fail(node, at + fmt::format("has the value {}, beyond the range of float", x));
-    }
-}
-
-void check_argument(const TextureNode& node, const TextureArgument& argument,
-                    const TextureInput& value)
-{
-    const std::string at = fmt::format("its argument {} ", argument.name);
-    if (argument.type == "sam2D") {
-        const size_t count = value.images.size();
-        if (!value.numbers.empty() || value.node >= 0 || count == 0)
-            fail(node, at + "is an image; name one with {\"texture\": N}");
-        if (!argument.is_array && count != 1) fail(node, at + "is one image; name just one");
-        if (argument.is_array && argument.length > 0 && count != size_t(argument.length))
-            fail(node,
-                 at + fmt::format("has {} images; the function wants {}", count, argument.length));
-        return;
-    }
-    if (value.node < 0) return check_numbers(node, argument, value);
-    if (argument.is_array || !argument.type.starts_with("float"))
-        fail(node, at + fmt::format("is of type {}, which no node gives; give it {}",
-                                    type_of(argument), "numbers"));
-}
-
-void check_node(const TextureNode& node, const TextureFunction& function)
-{
-    for (const auto& [name, value] : node.arguments) {
-        const auto at = std::ranges::find(function.arguments, name, &TextureArgument::name);
-        if (at == function.arguments.end())
-            fail(node, fmt::format("{} has no argument {}; it takes: {}", function.entry, name,
-                                   argument_names(function)));
-        check_argument(node, *at, value);
-    }
-    for (const TextureArgument& argument : function.arguments)
-        if (!node.arguments.count(argument.name))
-            fail(node, fmt::format("its argument {} {} is missing; give it a value",
-                                   type_of(argument), argument.name));
-}
-
-void add_constants(Pages& pages, const TextureArgument& argument, const TextureInput& value)
-{
-    const int width = width_of(argument), stride = stride_of(argument);
-    const bool is_int = argument.type.starts_with("int"),
-               is_uint = argument.type.starts_with("uint");
-    for (size_t k = 0; k < value.numbers.size(); ++k) {
-        const double x = value.numbers[k];
-        if (is_int)
-            pages.add(int(x));
-        else if (is_uint)
-            pages.add(uint(x));
-        else
-            pages.add(x);
-        for (int pad = width; int(k % size_t(width)) == width - 1 && pad < stride; ++pad)
-            pages.add(0);
-    }
 }
 
 }  // namespace
@@ -258,7 +165,8 @@ private:
                              {node.function, step.slot, first_request, outputs});
         const int words =
             (pages_.end() - region + int(page_words) - 1) / int(page_words) * int(page_words);
-        textures_.attachments.push_back({node.name, int(m), node.function, region, words});
+        textures_.attachments.push_back(
+            {node.name, int(m), node.function, region, words, step.node});
     }
 
     // Where the value of each argument lies, by its position; -1: in the stack.
@@ -281,7 +189,7 @@ private:
                     pages_.add(assembly_.add_image_slot(use, !value.is_linear, 0));
             } else {
                 length = value.numbers.size() / size_t(width_of(argument));
-                add_constants(pages_, argument, value);
+                for (const uint word : constant_words(argument, value.numbers)) pages_.add(word);
             }
             pages_[at] = uint(value.node >= 0 ? program.slot_of.at(value.node) : -1);
             pages_[at + 1] = uint(first);
@@ -358,6 +266,8 @@ void SceneAssembly::assemble_textures()
 
     textures.functions = builder_.texture_functions_;
     textures.attributes = attributes_;
+    for (const TextureNode& node : builder_.texture_nodes_)
+        textures.nodes.push_back({node.name, node.function, node.values});
     TexturePages pages(*this);
     for (size_t m = 0; m < builder_.materials_.size(); ++m) {
         if (!is_used(int(m))) continue;

@@ -1,0 +1,348 @@
+#include "host/live/live_scene.hpp"
+
+#include "backends/textures/texture_tool.hpp"
+#include "host/scene/gltf_document.hpp"
+#include "host/scene/texture_arguments.hpp"
+#include "host/scene/uri.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <fmt/format.h>
+#include <set>
+#include <string_view>
+
+namespace diptych {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* extension_name = "DIPTYCH_procedural_texture";
+
+// Line and column of a byte.
+std::pair<size_t, size_t> place_of(const std::string& text, size_t byte)
+{
+    const std::string_view before = std::string_view(text).substr(0, std::min(byte, text.size()));
+    const size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
+    return {size_t(std::count(before.begin(), before.end(), '\n')) + 1, before.size() - line_start};
+}
+
+json parsed(const fs::path& file, const std::string& text)
+{
+    try {
+        return json::parse(text);
+    } catch (const json::parse_error& error) {
+        const auto [line, column] = place_of(text, error.byte);
+        std::string reason = error.what();
+        if (const size_t at = reason.find(": "); at != std::string::npos)
+            reason = reason.substr(at + 2);
+        throw SceneError(fmt::format("{}:{}:{}: error: {}; repair the file", file.string(), line,
+                                     std::max<size_t>(column, 1), printable(reason)));
+    }
+}
+
+// Files beside the scene's that a list of its buffers or images names.
+void add_files(const json& document, const char* list, const fs::path& folder,
+               std::vector<fs::path>& files)
+{
+    const auto entries = document.find(list);
+    if (entries == document.end() || !entries->is_array()) return;
+    for (const json& entry : *entries) {
+        if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
+        const auto uri = entry["uri"].get<std::string>();
+        if (is_data_uri(uri)) continue;
+        const fs::path path = uri_path(uri, list);
+        files.push_back(path.is_absolute() ? path : folder / path);
+    }
+}
+
+bool is_same(const OcclusionRequest& a, const OcclusionRequest& b)
+{
+    return a.distance == b.distance && a.distance_argument == b.distance_argument &&
+           a.hemisphere == b.hemisphere && a.is_same_object == b.is_same_object;
+}
+
+// Whether all but the function's text is as it was.
+bool takes_the_same(const TextureFunction& a, const TextureFunction& b)
+{
+    const auto same_argument = [](const TextureArgument& x, const TextureArgument& y) {
+        return x.name == y.name && type_of(x) == type_of(y);
+    };
+    return a.entry == b.entry && a.attributes == b.attributes &&
+           std::ranges::equal(a.arguments, b.arguments, same_argument) &&
+           std::ranges::equal(a.occlusion, b.occlusion, is_same);
+}
+
+uint word_at(const SceneData& scene, size_t word)
+{
+    uint value = 0;
+    std::memcpy(&value, reinterpret_cast<const char*>(scene.materials.data()) + 4 * word, 4);
+    return value;
+}
+
+void set_word(SceneData& scene, size_t word, uint value)
+{
+    std::memcpy(reinterpret_cast<char*>(scene.materials.data()) + 4 * word, &value, 4);
+}
+
+}  // namespace
+
+LiveScene::LiveScene(fs::path file, std::vector<fs::path> more, std::vector<std::string> values,
+                     Loader load)
+    : file_(std::move(file)), more_(std::move(more)), values_(std::move(values)),
+      load_(std::move(load)), text_(read_text(file_)),
+      data_(std::make_unique<SceneData>(load_(values_)))
+{
+}
+
+LiveScene::Text LiveScene::read_text(const fs::path& file)
+{
+    GltfContainer container;
+    try {
+        container = open_gltf(file);
+    } catch (const SceneError& error) {
+        throw SceneError(printable(file.string()) + ": " + error.what());
+    }
+    Text text;
+    text.binary = std::hash<std::string_view>{}(
+        {reinterpret_cast<const char*>(container.binary.data()), container.binary.size()});
+    text.rest = parsed(file, container.text);
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    add_files(text.rest, "buffers", folder, text.files);
+    add_files(text.rest, "images", folder, text.files);
+    if (!text.rest.is_object() || !text.rest.contains("extensions")) return text;
+    const json::json_pointer at(std::string("/extensions/") + extension_name + "/nodes");
+    if (!text.rest["extensions"].is_object() || !text.rest.contains(at) ||
+        !text.rest[at].is_array())
+        return text;
+    for (json& node : text.rest[at]) {
+        const bool has =
+            node.is_object() && node.contains("arguments") && node["arguments"].is_object();
+        text.arguments.push_back(has ? node["arguments"] : json::object());
+        if (has) node.erase("arguments");
+    }
+    return text;
+}
+
+std::vector<fs::path> LiveScene::files() const
+{
+    std::set<fs::path> files = {file_};
+    files.insert(more_.begin(), more_.end());
+    files.insert(text_.files.begin(), text_.files.end());
+    files.insert(attempted_.begin(), attempted_.end());
+    for (const TextureFunction& function : data_->textures.functions) files.insert(function.file);
+    return {files.begin(), files.end()};
+}
+
+bool LiveScene::is_texture(const fs::path& file) const
+{
+    return std::ranges::any_of(data_->textures.functions, [&](const TextureFunction& function) {
+        return fs::path(function.file) == file;
+    });
+}
+
+template<class Change>
+Edit LiveScene::attempt(Change change)
+{
+    before_ = {text_, values_, nullptr, data_->textures, {}};
+    try {
+        Edit edit = change();
+        has_failed_ = false;
+        attempted_.clear();
+        return edit;
+    } catch (...) {
+        undo();
+        has_failed_ = true;
+        throw;
+    }
+}
+
+Edit LiveScene::reload(const std::string& why)
+{
+    auto fresh = std::make_unique<SceneData>(load_(values_));
+    before_.data = std::move(data_);
+    data_ = std::move(fresh);
+    return {EditKind::scene, why + ": the whole scene is loaded again", data_->notices};
+}
+
+Edit LiveScene::look_again(const std::vector<fs::path>& changed)
+{
+    return attempt([&]() -> Edit {
+        const auto other = std::ranges::find_if(
+            changed, [&](const fs::path& file) { return file != file_ && !is_texture(file); });
+        if (has_failed_ || std::ranges::find(changed, file_) != changed.end()) {
+            Text text = read_text(file_);
+            attempted_ = text.files;
+            const bool is_more = text.rest != text_.rest || text.binary != text_.binary;
+            text_ = std::move(text);
+            if (is_more) return reload(file_.filename().string() + ": more than arguments changed");
+        }
+        if (other != changed.end()) return reload(other->filename().string());
+        Edit edit;
+        std::string reason;
+        if (!translate_again(changed, edit, reason) || !update_values(edit, reason))
+            return reload(reason);
+        return edit;
+    });
+}
+
+// False: what a function takes has changed, not its text alone.
+bool LiveScene::translate_again(const std::vector<fs::path>& changed, Edit& edit,
+                                std::string& reason)
+{
+    for (TextureFunction& function : data_->textures.functions) {
+        const fs::path file = function.file;
+        if (std::ranges::find(changed, file) == changed.end() && !has_failed_) continue;
+        TextureFunction fresh =
+            translate_texture({file, function.file, function.asked, function.id});
+        fresh.asked = function.asked;
+        if (!takes_the_same(function, fresh)) {
+            reason = fmt::format("{}: {} takes or asks for other things than before",
+                                 file.filename().string(), fresh.entry);
+            return false;
+        }
+        const bool is_other = fresh.cpp != function.cpp || fresh.opencl != function.opencl;
+        if (is_other) {
+            edit.kind = EditKind::textures;
+            edit.what = file.filename().string();
+            edit.warnings.insert(edit.warnings.end(), fresh.warnings.begin(), fresh.warnings.end());
+        }
+        function = std::move(fresh);
+    }
+    return true;
+}
+
+// What a node's arguments are to be: the file's, those of the command line and the keyboard, then
+// the defaults of the texture.
+json LiveScene::values_of(size_t k) const
+{
+    const TextureNodeValues& node = data_->textures.nodes[k];
+    json values = k < text_.arguments.size() ? text_.arguments[k] : json::object();
+    for (const std::string& text : values_) {
+        const TextureValue set = parse_texture_value(text, "--set " + printable(text));
+        const auto named =
+            std::ranges::find(data_->textures.nodes, set.node, &TextureNodeValues::name);
+        if (named == data_->textures.nodes.begin() + std::ptrdiff_t(k))
+            values[set.argument] = set.value;
+    }
+    for (const TextureArgument& argument :
+         data_->textures.functions[size_t(node.function)].arguments) {
+        const json value = json::parse(argument.default_value, nullptr, false);
+        if (!values.contains(argument.name) && !value.is_discarded()) values[argument.name] = value;
+    }
+    return values;
+}
+
+// Brings every argument that is to have another value up to it. False: that takes more than bytes.
+bool LiveScene::update_values(Edit& edit, std::string& reason)
+{
+    std::vector<std::string> changes;
+    for (size_t k = 0; k < data_->textures.nodes.size(); ++k) {
+        TextureNodeValues& node = data_->textures.nodes[k];
+        const json values = values_of(k);
+        for (const auto& [name, old] : node.values) {
+            if (values.contains(name)) continue;
+            throw SceneError(fmt::format("texture node {}: its argument {} is missing; give it a "
+                                         "value",
+                                         node.name, name));
+        }
+        for (const auto& [name, value] : values.items()) {
+            const std::string text = dumped(value);
+            const auto old = node.values.find(name);
+            if (old != node.values.end() && old->second == text) continue;
+            if (!write_value(k, name, value, reason)) return false;
+            node.values[name] = text;
+            changes.push_back(fmt::format("{}.{}={}", node.name, printable(name),
+                                          text.size() > 60 ? text.substr(0, 57) + "..." : text));
+        }
+    }
+    if (changes.empty()) return true;
+    if (edit.kind == EditKind::nothing) edit.kind = EditKind::arguments;
+    if (changes.size() > 4) changes = {fmt::format("{} values", changes.size())};
+    edit.what += fmt::format("{}{}", edit.what.empty() ? "" : ", ", fmt::join(changes, ", "));
+    return true;
+}
+
+bool LiveScene::write_value(size_t k, const std::string& name, const json& value,
+                            std::string& reason)
+{
+    const TextureNodeValues& node = data_->textures.nodes[k];
+    const TextureFunction& function = data_->textures.functions[size_t(node.function)];
+    const std::string where =
+        fmt::format("texture node {}: argument {}", node.name, printable(name));
+    reason = fmt::format("{}.{} changes more than numbers", node.name, printable(name));
+    const std::optional<std::vector<double>> numbers = constant_numbers(value, where);
+    if (!numbers) return false;
+    check_argument({.name = node.name}, function, name, {.numbers = *numbers});
+    const auto at = std::ranges::find(function.arguments, name, &TextureArgument::name);
+    const std::vector<uint> words = constant_words(*at, *numbers);
+    const size_t place = size_t(at - function.arguments.begin());
+    for (const TextureAttachment& attachment : data_->textures.attachments) {
+        if (attachment.node_id != int(k)) continue;
+        const size_t descriptor = size_t(attachment.first_word) + 4 * place;
+        const size_t elements = words.size() / size_t(stride_of(*at));
+        if (int(word_at(*data_, descriptor)) != -1 ||
+            word_at(*data_, descriptor + 2) != uint(elements))
+            return false;
+        const size_t first = word_at(*data_, descriptor + 1);
+        for (size_t w = 0; w < words.size(); ++w) {
+            before_.words.emplace_back(first + w, word_at(*data_, first + w));
+            set_word(*data_, first + w, words[w]);
+        }
+    }
+    return true;
+}
+
+Edit LiveScene::set_value(const std::string& text)
+{
+    const bool had_failed = has_failed_;
+    const auto change = [&]() -> Edit {
+        const TextureValue set = parse_texture_value(text, printable(text));
+        const auto& nodes = data_->textures.nodes;
+        if (std::ranges::find(nodes, set.node, &TextureNodeValues::name) == nodes.end()) {
+            std::vector<std::string> names;
+            for (const TextureNodeValues& node : nodes) names.push_back(printable(node.name));
+            if (names.size() > 8) names.resize(8);
+            throw SceneError(fmt::format("{}: names no texture node; there are {}: {}",
+                                         printable(text), nodes.size(), fmt::join(names, ", ")));
+        }
+        std::erase_if(values_, [&](const std::string& old) {
+            return old.starts_with(set.node + "." + set.argument + "=");
+        });
+        values_.push_back(text);
+        Edit edit;
+        std::string reason;
+        return update_values(edit, reason) ? edit : reload(reason);
+    };
+    try {
+        Edit edit = attempt(change);
+        has_failed_ = had_failed && edit.kind != EditKind::scene;
+        return edit;
+    } catch (...) {
+        has_failed_ = had_failed;
+        throw;
+    }
+}
+
+std::unique_ptr<SceneData> LiveScene::accept()
+{
+    std::unique_ptr<SceneData> old = std::move(before_.data);
+    before_ = {};
+    return old;
+}
+
+void LiveScene::undo()
+{
+    if (before_.data) {
+        data_ = std::move(before_.data);
+    }
+    for (auto at = before_.words.rbegin(); at != before_.words.rend(); ++at)
+        set_word(*data_, at->first, at->second);
+    data_->textures = std::move(before_.textures);
+    text_ = std::move(before_.text);
+    values_ = std::move(before_.values);
+    before_ = {};
+    has_failed_ = true;
+}
+
+}  // namespace diptych
