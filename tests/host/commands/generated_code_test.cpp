@@ -1,0 +1,112 @@
+// The generated code of textures in people's hands, and a machine that cannot compile it.
+#include "tests/debugger/textured_scene.hpp"
+#include "tests/host/commands/program.hpp"
+
+#include "host/image/image.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace diptych;
+
+namespace {
+
+class GeneratedCode : public testing::TestWithParam<std::string> {
+protected:
+    GeneratedCode() { write_painted_scene(folder_); }
+    Outcome render(const std::vector<std::string>& more, const std::string& picture,
+                   std::map<std::string, std::string> environment = {}) const
+    {
+        std::vector<std::string> words = {
+            "render", folder_ / "scene.gltf", "--samples", "1", "--quiet", "--backend", GetParam(),
+            "-o",     folder_ / picture};
+        words.insert(words.end(), painted_view.begin(), painted_view.end());
+        words.insert(words.end(), more.begin(), more.end());
+        environment["DIPTYCH_CACHE_DIR"] = folder_ / "cache";
+        return run_diptych(words, {.seconds = 200, .environment = environment});
+    }
+    bool is_usable() const
+    {
+        return GetParam() != "opencl" ||
+               run_diptych({"devices"}).out.find("usable") != std::string::npos ||
+               run_diptych({"render", "--size", "8x8", "--samples", "1", "--backend", "opencl",
+                            "-o", folder_ / "trial.png"},
+                           {.seconds = 200})
+                       .exit_code == 0;
+    }
+    std::vector<float> pixels(const std::string& picture) const
+    {
+        return image::beauty_of(image::read_picture(folder_ / picture)).pixels;
+    }
+    std::string file() const
+    {
+        return GetParam() == "opencl" ? "code/functions.cl" : "code/functions.hpp";
+    }
+    std::string text() const
+    {
+        std::ifstream in(folder_ / file(), std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    }
+    TestFolder folder_;
+};
+
+TEST_P(GeneratedCode, AnEditedCopyRuns)
+{
+    if (!is_usable()) GTEST_SKIP() << "no OpenCL device";
+    const std::string code = folder_ / "code";
+    ASSERT_EQ(render({"--generated-dir", code}, "a.exr").exit_code, 0);
+    const Outcome same = render({"--use-generated", code}, "b.exr");
+    ASSERT_EQ(same.exit_code, 0) << same.text();
+    EXPECT_EQ(pixels("a.exr"), pixels("b.exr"));
+
+    std::string edited = text();
+    const size_t at = edited.find("0.25f");
+    ASSERT_NE(at, std::string::npos) << edited;
+    folder_.write(file(), edited.replace(at, 5, "0.75f"));
+    const Outcome other = render({"--use-generated", code}, "c.exr");
+    ASSERT_EQ(other.exit_code, 0) << other.text();
+    EXPECT_NE(pixels("a.exr"), pixels("c.exr"));
+    EXPECT_EQ(render({}, "d.exr").exit_code, 0);
+    EXPECT_EQ(pixels("a.exr"), pixels("d.exr"));
+}
+
+TEST_P(GeneratedCode, OtherTexturesAreRefused)
+{
+    if (!is_usable()) GTEST_SKIP() << "no OpenCL device";
+    const std::string code = folder_ / "code";
+    Outcome refused = render({"--use-generated", code}, "a.exr");
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find(file() + ": cannot be read, or is empty; write it with"),
+              std::string::npos)
+        << refused.err;
+    ASSERT_EQ(render({"--generated-dir", code}, "a.exr").exit_code, 0);
+    std::string source = painted_source;
+    source.replace(source.find("float scale, float3 tint"), 24, "float3 tint, float scale");
+    folder_.write("paint.c", source);
+    refused = render({"--use-generated", code}, "b.exr");
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find("does not name the textures of this scene"), std::string::npos)
+        << refused.err;
+    EXPECT_EQ(refused.err_lines().size(), 1u) << refused.err;
+}
+
+// The panels part: one needs a compiler when it runs, the other brings its own.
+TEST_P(GeneratedCode, WithoutACompilerOpenclStillRuns)
+{
+    if (!is_usable()) GTEST_SKIP() << "no OpenCL device";
+    std::filesystem::create_directories(folder_ / "empty");
+    const Outcome outcome = render({}, "a.exr", {{"PATH", folder_ / "empty"}});
+    if (GetParam() == "opencl") {
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        return;
+    }
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.text();
+    ASSERT_EQ(outcome.err_lines().size(), 1u) << outcome.text();
+    EXPECT_EQ(outcome.err_lines()[0],
+              "diptych: procedural textures: no C++ compiler (g++, c++ or clang++) on the PATH, "
+              "and this backend needs one; install it, set DIPTYCH_CXX, or use --backend opencl");
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, GeneratedCode, testing::Values("cpu", "twin", "opencl"),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
