@@ -133,9 +133,11 @@ int run_watch_command(const WatchCommand& command)
         return make_backend(run.device.backend, options_from_flags(run.device));
     };
     LiveRender live(scene, make, session.hooks(), run.scene.samples);
-    if (!run.is_quiet)
-        print_plan(scene.data(), live.backend(), live.backend().plan(scene.data()),
-                   run.scene.samples);
+    if (!run.is_quiet) {
+        RenderOptions options;
+        options.samples = run.scene.samples;
+        print_plan(scene.data(), live.backend(), live.backend().plan(scene.data()), options);
+    }
     session.tell(
         fmt::format("{} files; NODE.ARGUMENT=JSON sets a value, quit ends", scene.files().size()));
     live.run();
