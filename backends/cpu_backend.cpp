@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 
 namespace diptych {
@@ -54,7 +55,13 @@ public:
                                     << (2 * BLOCK_SHIFT);
         const size_t chunk_bytes = size_t(chunk_paths) * 80 * kernels_.real_bytes;
         const size_t fixed = chunk_bytes * threads_;
-        const size_t room = options_.memory_bytes > fixed ? options_.memory_bytes - fixed : 0;
+        if (options_.memory_bytes < fixed + result_bytes)
+            throw std::runtime_error(fmt::format("--memory: {} KiB do not hold the paths of {} "
+                                                 "threads and one block ({} KiB); raise "
+                                                 "it or lower --threads",
+                                                 options_.memory_bytes >> 10, threads_,
+                                                 ((fixed + result_bytes) >> 10) + 1));
+        const size_t room = options_.memory_bytes - fixed;
         // Beyond some thousand items a dispatch gains nothing: they run one after the other anyway.
         plan.items = int(std::clamp<size_t>(room / (4 * result_bytes), 1, 1024));
         plan.path_bytes = fixed + size_t(plan.items) * result_bytes;

@@ -41,6 +41,16 @@ size_t item_bytes(const SceneData& scene)
            small_items * sizeof(WorkItem);
 }
 
+// A buffer of the scene is one allocation.
+void check_allocation(const DeviceInfo& device, const std::string& name, size_t bytes)
+{
+    if (bytes > device.largest_allocation)
+        throw std::runtime_error("opencl: " + device.name + ": the scene's " + name + " need " +
+                                 megabytes(bytes) + ", the device allocates at most " +
+                                 megabytes(device.largest_allocation) +
+                                 " at once; simplify the scene or use --backend cpu");
+}
+
 // Of the buffers that a dispatch needs, the largest one's share of an item.
 size_t widest_buffer(const SceneData& scene)
 {
@@ -106,11 +116,7 @@ std::vector<opencl::Buffer> upload_scene(const opencl::Context& context, opencl:
 {
     std::vector<opencl::Buffer> buffers;
     const auto upload = [&](const char* name, const void* data, size_t bytes) {
-        if (bytes > device.largest_allocation)
-            throw std::runtime_error("opencl: " + device.name + ": the scene's " + name + " need " +
-                                     megabytes(bytes) + ", the device allocates at most " +
-                                     megabytes(device.largest_allocation) +
-                                     " at once; simplify the scene or use --backend cpu");
+        check_allocation(device, name, bytes);
         buffers.push_back(context.buffer(bytes, name));
         queue.write(buffers.back(), bytes, data);
     };
@@ -144,6 +150,9 @@ DispatchMemory::DispatchMemory(const opencl::Context& context, const SceneData& 
 
 Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory_bytes)
 {
+#define CHECK_ROW(type, name) check_allocation(device, #name, scene.name.size() * sizeof(type));
+    SCENE_BUFFERS(CHECK_ROW)
+#undef CHECK_ROW
     Plan plan;
     plan.scene_bytes = scene_bytes(scene);
     plan.structure_bytes = structure_bytes(scene);

@@ -14,6 +14,7 @@
 #include <iostream>
 #include <optional>
 #include <stdexcept>
+#include <unistd.h>
 
 namespace diptych {
 namespace {
@@ -68,6 +69,18 @@ private:
     double interval_;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+// Before anything is allocated.
+void check_film_fits(const Settings& settings, const RenderOptions& options)
+{
+    const size_t needed = film_bytes(settings, options);
+    const size_t there = size_t(sysconf(_SC_PHYS_PAGES)) * size_t(sysconf(_SC_PAGE_SIZE));
+    if (needed > there)
+        throw std::runtime_error(fmt::format(
+            "--size: the film of {} x {} pixels needs {} MiB, this machine has {} MiB; "
+            "render a smaller picture, or fewer than {} samples without --error",
+            settings.width, settings.height, needed >> 20, there >> 20, standard_error_samples));
+}
 
 void print_audit(const Audit& audit, double bar)
 {
@@ -213,6 +226,7 @@ int run_render_command(const RenderCommand& command)
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
     SceneData scene = load_from_flags(run.scene);
+    check_film_fits(scene.settings[0], options);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
     std::optional<RenderState> start =
         checkpoint.begin(scene, options, run.device.backend, *backend, run.is_quiet);

@@ -208,6 +208,49 @@ TEST_F(OpenclBackendTest, PlansWithinTheMemoryWhateverThePicture)
     });
 }
 
+// As on a device with narrow limits.
+class NarrowDevice {
+public:
+    explicit NarrowDevice(size_t bytes)
+    {
+        setenv("DIPTYCH_LARGEST_ALLOCATION", std::to_string(bytes).c_str(), 1);
+    }
+    ~NarrowDevice() { unsetenv("DIPTYCH_LARGEST_ALLOCATION"); }
+};
+
+TEST_F(OpenclBackendTest, RendersTheSameInSmallAllocations)
+{
+    SceneData scene = lamp_scene();
+    const std::vector<WorkItem> one = {blocks(scene)[0]};
+    on_each_device({}, [&](Backend& wide) {
+        const Results expected = render(wide, scene, one, QUANTUM);
+        const NarrowDevice limit(100'000);  // two blocks of a float3
+        on_each_device({}, [&](Backend& narrow) {
+            EXPECT_EQ(narrow.plan(scene).items, 2);
+            EXPECT_TRUE(is_same(expected, render(narrow, scene, one, QUANTUM)));
+        });
+    });
+    const NarrowDevice limit(10'000);
+    on_each_device({}, [&](Backend& narrow) {
+        const std::string message = message_of([&] { narrow.plan(scene); });
+        EXPECT_NE(message.find("one block of paths needs"), std::string::npos) << message;
+    });
+}
+
+TEST_F(OpenclBackendTest, RefusesByNumbersWhatIsTooLargeForOneAllocation)
+{
+    const NarrowDevice limit(256u << 20);
+    SceneData scene = lamp_scene();
+    scene.texels_8.resize((300u << 20) / sizeof(uint));
+    on_each_device({}, [&](Backend& backend) {
+        const std::string message = message_of([&] { backend.plan(scene); });
+        EXPECT_NE(message.find("texels_8 need 301 MB"), std::string::npos) << message;
+        EXPECT_NE(message.find("at most 257 MB"), std::string::npos) << message;
+        scene.texels_8.resize((200u << 20) / sizeof(uint));
+        EXPECT_EQ(message_of([&] { backend.plan(scene); }), "");
+    });
+}
+
 TEST_F(OpenclBackendTest, CompilesOnceForAllItsRuns)
 {
     const auto folder = std::filesystem::temp_directory_path() / "diptych-opencl-backend-test";
