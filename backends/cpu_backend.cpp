@@ -1,6 +1,7 @@
 #include "backends/cpu_backend.hpp"
 
 #include "backends/bvh_build.hpp"
+#include "backends/scene_view.hpp"
 #include "backends/textures/native_stage.hpp"
 #include "kernels_cpu/chunk.hpp"
 #include "kernels_cpu/parallel_for.hpp"
@@ -18,13 +19,9 @@ namespace diptych {
 namespace {
 
 #define COUNT_ROW(...) +1
-constexpr int scene_rows = 0 SCENE_BUFFERS(COUNT_ROW);
 constexpr int result_rows = 0 RESULT_BUFFERS(COUNT_ROW);
 constexpr int texture_result_rows = 0 TEXTURE_RESULT_BUFFERS(COUNT_ROW);
 
-// Readable memory behind every pointer: a kernel may load from the start of a buffer that the scene
-// left empty.
-alignas(64) const unsigned char zeros[256] = {};
 const float one_cell[] = {0, 1, 0, 1};  // of an environment: the row's share, the column's in it
 
 class CpuBackend final : public Backend {
@@ -150,11 +147,7 @@ void CpuBackend::upload(SceneData& scene)
 
 void CpuBackend::bind(const SceneData& scene)
 {
-    buffers_.clear();
-#define BIND(type, name) \
-    buffers_.push_back(scene.name.empty() ? static_cast<const void*>(zeros) : scene.name.data());
-    SCENE_BUFFERS(BIND)
-    static_assert(scene_rows > 0 && sizeof(zeros) >= sizeof(Settings));
+    buffers_ = buffers_of(scene);
     scene_view_.effects = scene.effects;
     scene_view_.buffers = buffers_.data();
 }

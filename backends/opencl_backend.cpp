@@ -4,6 +4,7 @@
 #include "backends/kernel_sources.hpp"
 #include "backends/opencl_memory.hpp"
 #include "backends/opencl_programs.hpp"
+#include "common/as_cpp/texture_lookups.hpp"
 #include "common/as_cpp/texture_rows.hpp"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ namespace {
 // A stage's kernel, and how long its launches may be.
 struct StageKernel {
     opencl::Kernel kernel;
+    int lookup = LOOKUP_SURFACE;  // which planes it is bound to
     double seconds_per_path = 0;  // the slowest lately; 0: not measured yet
 
     // So many that a launch takes half of what is allowed; few as long as nothing is known.
@@ -63,6 +65,8 @@ private:
     void bind_buffers(StageKernel& stage);
     void begin(const Dispatch& dispatch);
     void run(Stage stage, int count, bool is_compacted);
+    void launch_over(Stage stage, int lookup, int count, bool is_compacted);
+    void show_records(StageKernel& kernel, int lookup);
     int compact(int count, bool is_compacted, bool keeps_order);
     int groups_of(int paths) const;
     void launch(const opencl::Kernel& kernel, Stage stage, int paths, int groups);
@@ -105,7 +109,18 @@ const int first_header = [] {
 #undef COUNT_ROW
     return rows;
 }();
-enum Header { ITEMS, LIVE, CAPACITY, RESULTS, SAMPLES, PIXEL_SHIFT, FIRST, COUNT, IS_COMPACTED };
+enum Header {
+    ITEMS,
+    LIVE,
+    CAPACITY,
+    RESULTS,
+    SAMPLES,
+    PIXEL_SHIFT,
+    FIRST,
+    COUNT,
+    IS_COMPACTED,
+    LOOKUP
+};
 int argument(Header header) { return first_header + header; }
 
 // Place of a row among SCENE_BUFFERS.
@@ -208,6 +223,8 @@ void OpenclBackend::bind_buffers(StageKernel& stage)
         for (const opencl::Buffer& buffer : *buffers) stage.kernel.set(index++, buffer);
     stage.kernel.set(argument(ITEMS), memory_.items);
     stage.kernel.set(argument(LIVE), memory_.live[0]);
+    stage.kernel.set(argument(LOOKUP), LOOKUP_SURFACE);
+    stage.lookup = LOOKUP_SURFACE;
 }
 
 void OpenclBackend::begin(const Dispatch& dispatch)
@@ -241,9 +258,35 @@ void OpenclBackend::begin(const Dispatch& dispatch)
     statistics_.paths += unsigned(paths_);
 }
 
+// Binds the planes of the records in the place of the path's own, or these again.
+void OpenclBackend::show_records(StageKernel& runs, int lookup)
+{
+    if (runs.lookup == lookup) return;
+    runs.lookup = lookup;
+    const int first = int(scene_.size());
+    const bool is_own = lookup == LOOKUP_SURFACE;
+    for (const StandIn& record : shadow_records) {
+        const std::vector<opencl::Buffer>& planes =
+            record.is_texture_row && !is_own ? memory_.texture_planes : memory_.path_planes;
+        runs.kernel.set(first + record.row, planes[size_t(is_own ? record.row : record.by)]);
+    }
+    runs.kernel.set(argument(LOOKUP), lookup);
+}
+
+// A stage, after the lookups of textures that it waits for.
 void OpenclBackend::run(Stage stage, int count, bool is_compacted)
 {
+    if (stage == STAGE_scale_light)
+        look_up_textures(effects_, LOOKUP_EMISSION, [&](Stage textures, int lookup) {
+            launch_over(textures, lookup, count, is_compacted);
+        });
+    launch_over(stage, LOOKUP_SURFACE, count, is_compacted);
+}
+
+void OpenclBackend::launch_over(Stage stage, int lookup, int count, bool is_compacted)
+{
     StageKernel& runs = kernels_[stage];
+    show_records(runs, lookup);
     runs.kernel.set(argument(LIVE), memory_.live[0]);
     runs.kernel.set(argument(IS_COMPACTED), is_compacted ? 1 : 0);
     for (int first = 0; first < count;) {
@@ -262,14 +305,7 @@ void OpenclBackend::run(Stage stage, int count, bool is_compacted)
 // The number of live paths; their list becomes live[0], unless the order is to be kept.
 int OpenclBackend::compact(int count, bool is_compacted, bool keeps_order)
 {
-    const int depth_row = [] {
-        const auto& rows = path_rows();
-        return int(
-            std::find_if(rows.begin(), rows.end(),
-                         [](const PlaneRow& row) { return std::strcmp(row.name, "depth") == 0; }) -
-            rows.begin());
-    }();
-    const opencl::Buffer& depth = memory_.path_planes[size_t(depth_row)];
+    const opencl::Buffer& depth = memory_.path_planes[row_depth];
     for (opencl::Kernel* kernel : {&compact_count_, &compact_write_}) {
         kernel->set(0, depth);
         kernel->set(1, memory_.live[0]);
@@ -363,10 +399,9 @@ void OpenclBackend::render(const Dispatch& dispatch, Results& results)
 StageState OpenclBackend::state_after(Stage stage, int bounce)
 {
     StageState state{stage, bounce, paths_, {}};
-    const std::vector<PlaneRow>& rows = path_rows();
     std::vector<std::uint32_t> words;
-    for (size_t r = 0; r < rows.size(); ++r) {
-        words.resize(size_t(rows[r].components) * size_t(paths_));
+    for (size_t r = 0; r < size_t(path_row_count); ++r) {
+        words.resize(size_t(path_rows[r].components) * size_t(paths_));
         queue_.read(memory_.path_planes[r], words.size() * sizeof words[0], words.data());
         std::vector<double> plane;
         const bool is_defined = std::any_of(words.begin(), words.end(), [](std::uint32_t word) {
@@ -377,7 +412,7 @@ StageState OpenclBackend::state_after(Stage stage, int bounce)
             for (const std::uint32_t word : words) {
                 float real;
                 std::memcpy(&real, &word, sizeof real);
-                plane.push_back(rows[r].is_real ? double(real) : double(int(word)));
+                plane.push_back(path_rows[r].is_real ? double(real) : double(int(word)));
             }
         }
         state.planes.push_back(std::move(plane));

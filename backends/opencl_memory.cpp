@@ -1,5 +1,7 @@
 #include "backends/opencl_memory.hpp"
 
+#include "common/as_cpp/path_rows.hpp"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -14,17 +16,18 @@ constexpr int most_items_of_cpu = 8;  // 32 thousand paths: what stays in a proc
 
 std::string megabytes(size_t bytes) { return std::to_string((bytes >> 20) + 1) + " MB"; }
 
-size_t plane_bytes(const std::vector<PlaneRow>& rows)
+template<class Rows>
+size_t plane_bytes(const Rows& rows)
 {
     size_t bytes = 0;
-    for (const PlaneRow& row : rows) bytes += sizeof(float) * size_t(row.components);
+    for (const auto& row : rows) bytes += sizeof(float) * size_t(row.components);
     return bytes;
 }
 
 #define NUMBERED_ROW(type, name) {#name, planes[row++], #type[0] == 'f'},
 
 // Rows of TEXTURE_BUFFERS, a component for each plane.
-std::vector<PlaneRow> texture_rows(const SceneData& scene)
+std::vector<PlaneRow> texture_planes_of(const SceneData& scene)
 {
     const auto planes = texture_planes(scene);
     size_t row = 0;
@@ -34,7 +37,7 @@ std::vector<PlaneRow> texture_rows(const SceneData& scene)
 size_t item_bytes(const SceneData& scene)
 {
     const size_t lists = 3 * sizeof(int);  // live, twice, and at most one sum a path
-    const size_t planes = plane_bytes(path_rows()) + plane_bytes(texture_rows(scene));
+    const size_t planes = plane_bytes(path_rows) + plane_bytes(texture_planes_of(scene));
     return paths_per_item * (planes + lists) +
            results_per_item *
                (plane_bytes(result_rows()) + plane_bytes(texture_result_rows(scene))) +
@@ -55,8 +58,9 @@ void check_allocation(const DeviceInfo& device, const std::string& name, size_t 
 size_t widest_buffer(const SceneData& scene)
 {
     int components = 1;
-    for (const std::vector<PlaneRow>& rows : {path_rows(), texture_rows(scene)})
-        for (const PlaneRow& row : rows) components = std::max(components, row.components);
+    for (const PathRow& row : path_rows) components = std::max(components, row.components);
+    for (const PlaneRow& row : texture_planes_of(scene))
+        components = std::max(components, row.components);
     return sizeof(float) * size_t(components) * paths_per_item;
 }
 
@@ -77,11 +81,11 @@ size_t structure_bytes(const SceneData& scene)
            (sizeof(BvhNode) / 2 + sizeof(int));
 }
 
-std::vector<opencl::Buffer> planes(const opencl::Context& context,
-                                   const std::vector<PlaneRow>& rows, int entries)
+template<class Rows>
+std::vector<opencl::Buffer> planes(const opencl::Context& context, const Rows& rows, int entries)
 {
     std::vector<opencl::Buffer> buffers;
-    for (const PlaneRow& row : rows)
+    for (const auto& row : rows)
         buffers.push_back(
             context.buffer(sizeof(float) * size_t(row.components) * size_t(entries), row.name));
     return buffers;
@@ -90,13 +94,6 @@ std::vector<opencl::Buffer> planes(const opencl::Context& context,
 }  // namespace
 
 #define PLANE_ROW(type, name) {#name, int(sizeof(type) / sizeof(PLANE(type))), #type[0] == 'f'},
-#define PATH_ROW(type, name, life) PLANE_ROW(type, name)
-
-const std::vector<PlaneRow>& path_rows()
-{
-    static const std::vector<PlaneRow> rows = {PATH_BUFFERS(PATH_ROW)};
-    return rows;
-}
 
 const std::vector<PlaneRow>& result_rows()
 {
@@ -136,9 +133,9 @@ std::vector<opencl::Buffer> upload_scene(const opencl::Context& context, opencl:
 DispatchMemory::DispatchMemory(const opencl::Context& context, const SceneData& scene,
                                int item_count, int group_size)
     : paths(item_count * paths_per_item), results(item_count * results_per_item),
-      path_planes(planes(context, path_rows(), paths)),
+      path_planes(planes(context, path_rows, paths)),
       result_planes(planes(context, result_rows(), results)),
-      texture_planes(planes(context, texture_rows(scene), paths)),
+      texture_planes(planes(context, texture_planes_of(scene), paths)),
       texture_result_planes(planes(context, texture_result_rows(scene), results)),
       items(context.buffer(sizeof(WorkItem) * small_items * size_t(item_count), "items"))
 {

@@ -8,13 +8,12 @@
 
 namespace diptych {
 
-// A row of PATH_BUFFERS or RESULT_BUFFERS.
+// A row of RESULT_BUFFERS, or of TEXTURE_BUFFERS.
 struct PlaneRow {
     const char* name;
     int components;
     bool is_real;
 };
-const std::vector<PlaneRow>& path_rows();
 const std::vector<PlaneRow>& result_rows();
 // Rows of TEXTURE_RESULT_BUFFERS, a component for each plane that the scene asks for.
 std::vector<PlaneRow> texture_result_rows(const SceneData& scene);

@@ -29,9 +29,10 @@ struct SceneData {
 };
 
 // How many planes each row of TEXTURE_BUFFERS has, and of TEXTURE_RESULT_BUFFERS.
-inline std::array<int, 2> texture_planes(const SceneData& scene)
+inline std::array<int, 4> texture_planes(const SceneData& scene)
 {
-    return {scene.textures.occlusion_results, 4 * scene.textures.outputs};
+    const SceneTextures& textures = scene.textures;
+    return {textures.occlusion_results, 4 * textures.outputs, textures.records, textures.records};
 }
 inline std::array<int, 1> texture_result_planes(const SceneData& scene)
 {

@@ -79,9 +79,19 @@
 // Planes whose number the scene decides, none in most: what textures asked for and what they gave.
 //   occlusion_result: of each request, the open fraction of its rays
 //   texture_result:   four of each SLOT_* that some material of the scene computes
+//   record_...:       a place away from the one that the path has met, where a texture is asked;
+//                     triangle -1: nowhere (see LOOKUP_*)
 #define TEXTURE_BUFFERS(X)     \
     X(float, occlusion_result) \
-    X(float, texture_result)
+    X(float, texture_result)   \
+    X(int, record_triangle)    \
+    X(int, record_instance)
+
+// Textures are asked at the place that a path has met, or at its record. Whoever launches a stage
+// for records hands it a view where their planes stand for hit_triangle and hit_instance, and those
+// of the ray that leads there for ray_origin and ray_direction: the stage is the same.
+#define LOOKUP_SURFACE 0   // at the place that the path has met
+#define LOOKUP_EMISSION 1  // at the point chosen on a light
 
 // What may be wrong with an evaluation of a texture; each is counted for its path's pixel.
 #define TEXTURE_FAULT_NOT_FINITE 0  // evaluations whose result was replaced
@@ -115,7 +125,8 @@ typedef struct {
     int samples;      // samples a pixel in each work item, a power of two
     int pixel_shift;  // log2 of the pixels in a work item: 2 * BLOCK_SHIFT, or 0 when it is one
                       // pixel
-    int turn;  // at_end stages run once for each sample of a pixel, in ascending order: which one
+    int turn;    // at_end stages run once for each sample of a pixel, in ascending order: which one
+    int lookup;  // LOOKUP_*: what textures are asked for, and where
     GLOBAL const STORED(WorkItem) * items;
     PATH_BUFFERS(PATH_FIELD)
     RESULT_BUFFERS(RESULT_FIELD)

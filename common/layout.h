@@ -105,13 +105,19 @@ typedef struct {
     int emission_slot;
     int specular_slot;
     int specular_color_slot;
-    int texture_program;  // where in the words of the materials its TextureProgram lies; 0: none
-    int reserved[2];
+    int texture_program[3];  // of each PROGRAM_*: where in the words of the materials it lies; 0:
+                             // none
     float4 reserved_effects;
 } Material;
 
 // In place of a texture slot: the texture stage has computed what the material reads there.
 #define TEXTURE_PROCEDURAL (-2)
+
+// The programs of a material's textures: all that it reads where a path has met it; alpha alone;
+// emission alone.
+#define PROGRAM_SURFACE 0
+#define PROGRAM_ALPHA 1
+#define PROGRAM_EMISSION 2
 
 // The places of a material where a texture may stand.
 #define SLOT_BASE 0

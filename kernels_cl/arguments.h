@@ -20,7 +20,7 @@
     TEXTURE_BUFFERS(TEXTURE_ARGUMENT)                                                             \
     TEXTURE_RESULT_BUFFERS(TEXTURE_RESULT_ARGUMENT)                                               \
     GLOBAL const WorkItem *items, GLOBAL const int *live, int capacity, int results, int samples, \
-        int pixel_shift, int first, int count, int is_compacted
+        int pixel_shift, int first, int count, int is_compacted, int lookup
 
 #define BIND_SCENE(type, name) scene.name = name;
 #define BIND_PATH(type, name, life) paths.name = name;
@@ -39,6 +39,7 @@
     paths.samples = samples;         \
     paths.pixel_shift = pixel_shift; \
     paths.turn = 0;                  \
+    paths.lookup = lookup;           \
     paths.items = items;             \
     PATH_BUFFERS(BIND_PATH)          \
     RESULT_BUFFERS(BIND_RESULT)      \

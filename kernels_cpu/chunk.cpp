@@ -66,6 +66,7 @@ Chunk::Chunk(const KernelSet& kernels, const EmbreeScene* embree, const SceneVie
     view_.capacity = capacity;
     view_.planes = planes_.data();
     view_.texture_planes = texture_planes_.data();
+    shadow_records_ = RecordView(view_, shadow_records);
 }
 
 void Chunk::run(const PathView& results, int first_result, const void* item)
@@ -120,17 +121,26 @@ void Chunk::trace_paths(int count)
 
 void Chunk::run_stage(Stage stage, int count)
 {
+    if (stage == STAGE_scale_light)
+        look_up_textures(scene_.effects, LOOKUP_EMISSION, [&](Stage textures, int lookup) {
+            run_stage(textures, shadow_records_.of(view_, lookup), count);
+        });
+    run_stage(stage, view_, count);
+}
+
+void Chunk::run_stage(Stage stage, const PathView& view, int count)
+{
     const auto start = std::chrono::steady_clock::now();
     if (const StageLoop loop = kernels_.loop(stage, scene_.effects))
-        loop(scene_, view_, 0, count);
+        loop(scene_, view, 0, count);
     else if (stage == STAGE_intersect)
-        rays += embree_->intersect(scene_, view_, count, bounce_ == 0);
+        rays += embree_->intersect(scene_, view, count, bounce_ == 0);
     else if (stage == STAGE_occlusion)
-        shadow_rays += embree_->occlusion(scene_, view_, count);
+        shadow_rays += embree_->occlusion(scene_, view, count);
     else if (stage == STAGE_trace_texture_rays)
-        shadow_rays += trace_texture_rays(*embree_, scene_, view_, count);
+        shadow_rays += trace_texture_rays(*embree_, scene_, view, count);
     else if (stage == STAGE_evaluate_textures)
-        scene_.textures->evaluate(scene_, view_, 0, count);
+        scene_.textures->evaluate(scene_, view, 0, count);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     stage_seconds[stage] += elapsed.count();
 }

@@ -4,6 +4,7 @@
 
 #include "kernels_cpu/embree_scene.hpp"
 #include "kernels_cpu/kernels.hpp"
+#include "kernels_cpu/record_view.hpp"
 
 #include <array>
 #include <cstdint>
@@ -30,6 +31,7 @@ public:
 
 private:
     void run_stage(Stage stage, int count);
+    void run_stage(Stage stage, const PathView& view, int count);
     void trace_paths(int count);
     int compact(int count);
     void retire(int count);
@@ -44,6 +46,7 @@ private:
     std::vector<int> slots_;
     std::vector<int> live_;
     PathView view_;
+    RecordView shadow_records_;
     int bounce_ = 0;
 };
 

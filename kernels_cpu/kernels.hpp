@@ -19,6 +19,7 @@ struct PathView {
     int samples = 0;
     int pixel_shift = 0;
     int turn = 0;
+    int lookup = 0;
     const void* items = nullptr;  // WorkItem
     void* const* planes = nullptr;
     void* const* result_planes = nullptr;
@@ -46,7 +47,7 @@ struct TextureKernels {
     // The same for one path, step by step; not there where the stage is vectorised.
     void (*watch)(const SceneView&, const PathView&, int path, TextureWatch,
                   void* watcher) = nullptr;
-    int planes[2] = {};  // of each row of TEXTURE_BUFFERS
+    int planes[4] = {};  // of each row of TEXTURE_BUFFERS
 };
 
 struct KernelSet {

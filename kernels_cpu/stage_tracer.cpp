@@ -37,6 +37,7 @@ StageTracer::StageTracer(const KernelSet& kernels, const EmbreeScene* embree,
     view_.texture_planes = texture_planes_.data();
     view_.capacity = int(padded);
     view_.planes = planes_.data();
+    shadow_records_ = RecordView(view_, shadow_records);
 }
 
 void StageTracer::run(const std::function<void(Stage, int, Planes)>& after_stage)
@@ -53,16 +54,25 @@ void StageTracer::run(const std::function<void(Stage, int, Planes)>& after_stage
 
 void StageTracer::run_stage(Stage stage, int bounce)
 {
+    if (stage == STAGE_scale_light)
+        look_up_textures(scene_.effects, LOOKUP_EMISSION, [&](Stage textures, int lookup) {
+            run_stage(textures, shadow_records_.of(view_, lookup), bounce);
+        });
+    run_stage(stage, view_, bounce);
+}
+
+void StageTracer::run_stage(Stage stage, const PathView& view, int bounce)
+{
     if (const StageLoop loop = kernels_.loop(stage, scene_.effects))
-        loop(scene_, view_, 0, paths_);
+        loop(scene_, view, 0, paths_);
     else if (stage == STAGE_intersect)
-        embree_->intersect(scene_, view_, paths_, bounce == 0);
+        embree_->intersect(scene_, view, paths_, bounce == 0);
     else if (stage == STAGE_occlusion)
-        embree_->occlusion(scene_, view_, paths_);
+        embree_->occlusion(scene_, view, paths_);
     else if (stage == STAGE_trace_texture_rays)
-        trace_texture_rays(*embree_, scene_, view_, paths_);
+        trace_texture_rays(*embree_, scene_, view, paths_);
     else if (stage == STAGE_evaluate_textures)
-        scene_.textures->evaluate(scene_, view_, 0, paths_);
+        scene_.textures->evaluate(scene_, view, 0, paths_);
 }
 
 StageTracer::Planes StageTracer::planes() const

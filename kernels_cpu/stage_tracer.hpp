@@ -4,6 +4,7 @@
 
 #include "kernels_cpu/embree_scene.hpp"
 #include "kernels_cpu/kernels.hpp"
+#include "kernels_cpu/record_view.hpp"
 
 #include <functional>
 #include <vector>
@@ -26,6 +27,7 @@ public:
 
 private:
     void run_stage(Stage stage, int bounce);
+    void run_stage(Stage stage, const PathView& view, int bounce);
     Planes planes() const;
     bool is_any_alive() const;
 
@@ -33,6 +35,7 @@ private:
     const EmbreeScene* embree_;
     SceneView scene_;
     PathView view_;
+    RecordView shadow_records_;
     int paths_;
     std::vector<std::vector<unsigned char>> memory_;
     std::vector<void*> planes_;

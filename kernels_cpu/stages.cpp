@@ -35,10 +35,11 @@ constexpr unsigned variants[] = {
         EFFECT_BASE_TEXTURE,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
         EFFECT_BASE_TEXTURE | EFFECT_SURFACE_TEXTURES | EFFECT_NORMAL_MAP,
-    ~unsigned(EFFECT_PROCEDURAL),
+    ~unsigned(USER_TEXTURE_EFFECTS),
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_PROCEDURAL,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
         EFFECT_PROCEDURAL,
+    ~unsigned(EFFECT_PROCEDURAL_EMISSION),
     ~0u,
 };
 [[maybe_unused]] constexpr int variant_count = int(sizeof(variants) / sizeof(variants[0]));
@@ -93,11 +94,11 @@ ENTRY_walk(intersect) ENTRY_walk(occlusion) ENTRY_walk(trace_texture_rays)
 {
     const int variant = variant_for(effects);
 #if VECTORISED
-#define LOOPS_OF(name)                                                                            \
-    static constexpr StageLoop name##_loops[] = {name##_loop<0>, name##_loop<1>, name##_loop<2>,  \
-                                                 name##_loop<3>, name##_loop<4>, name##_loop<5>,  \
-                                                 name##_loop<6>, name##_loop<7>, name##_loop<8>}; \
-    static_assert(std::size(name##_loops) == variant_count);                                      \
+#define LOOPS_OF(name)                                                                   \
+    static constexpr StageLoop name##_loops[] = {                                        \
+        name##_loop<0>, name##_loop<1>, name##_loop<2>, name##_loop<3>, name##_loop<4>,  \
+        name##_loop<5>, name##_loop<6>, name##_loop<7>, name##_loop<8>, name##_loop<9>}; \
+    static_assert(std::size(name##_loops) == variant_count);                             \
     if (stage == STAGE_##name) return name##_loops[variant];
 #else
 #define LOOPS_OF(name) \

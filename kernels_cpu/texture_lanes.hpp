@@ -205,7 +205,8 @@ void run(const Scene& scene, const Paths& paths, int first, int count)
         const int stop = start + chunk_count < end ? start + chunk_count : end;
         int programs[chunk_count];
 #pragma omp simd
-        for (int i = start; i < stop; ++i) programs[i - start] = program_of(&scene, &paths, i);
+        for (int i = start; i < stop; ++i)
+            programs[i - start] = texture_program_of(&scene, &paths, i);
         waiting.count = 0;
         for (int i = start; i < stop; ++i) {
             waiting.path[waiting.count] = i;

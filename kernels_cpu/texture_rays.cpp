@@ -180,11 +180,8 @@ int trace_texture_rays(const EmbreeScene& embree, const SceneView& scene_view,
     Lanes lanes;
     int traced = 0;
     for (int i = 0; i < count; ++i) {
-        const int hit = get_hit_triangle(&views.paths, i);
-        if (hit < 0 || get_depth(&views.paths, i) < 0) continue;
-        const int program =
-            views.scene.materials[views.scene.triangles[hit].material].texture_program;
-        if (program == 0) continue;
+        const int program = texture_program_of(&views.scene, &views.paths, i);
+        if (program == 0 || get_depth(&views.paths, i) < 0) continue;
         const TextureRequests requests = texture_requests(&views.scene, program);
         if (requests.count == 0) continue;
         lanes.path[lanes.count] = i;

@@ -34,16 +34,6 @@ using diptych::SceneView;
 
 #include "kernels_cpu/typed_views.hpp"
 
-// Where the material of what path i has hit keeps its program; 0: nothing to run.
-SHARED int program_of(const Scene* scene, const Paths* paths, int i)
-{
-    const int hit = get_hit_triangle(paths, i);
-    const int triangle = hit < 0 ? 0 : hit;
-    const int program = scene->materials[scene->triangles[triangle].material].texture_program;
-    const int is_dead = (hit < 0) | (get_depth(paths, i) < 0);
-    return is_dead ? 0 : program;
-}
-
 #define VALUE_OF(value) \
     TextureValue { (value).x, (value).y, (value).z, (value).w }
 
@@ -66,35 +56,34 @@ TextureValue call(TextureContext* tx, int function, int region)
     return TextureValue{0, 0, 0, 0};
 }
 
-// All steps of path i; see(number, stack, value, tx) looks at each.
-template<typename See>
-void run_path(const Scene& scene, const Paths& paths, int i, const See& see)
+// Who looks at the steps of a path; nobody, as a rule: then what was wrong is counted.
+struct Watcher {
+    diptych::TextureWatch watch = nullptr;
+    void* watcher = nullptr;
+};
+
+void texture_see(const Watcher& watcher, int number, const float* stack, const TextureValue& v,
+                 const TextureContext* tx)
 {
-    const int word = program_of(&scene, &paths, i);
-    if (word == 0) return;
-    const TextureProgram program = texture_program(&scene, word);
-    TextureContext tx = texture_context(&scene, &paths, i, TEXTURE_ASKED);
-    float stack[4 * TEXTURE_SLOTS] = {};
-    tx.stack = stack;
-    for (int k = 0; k < program.steps; ++k) {
-        const TextureStep step = texture_step(&scene, program.first, k);
-        texture_begin(&tx, step);
-        const TextureValue given = call(&tx, step.function, step.region);
-        see(k, stack, given, tx);
-        const TextureValue value = texture_finite(given);
-        texture_push(stack, step.slot, value);
-        texture_store(&paths, i, step.outputs, value);
+    if (!watcher.watch) {
+        const int verdict = texture_verdict(tx, v);
+        if (verdict != 0) texture_count(tx->paths, tx->path, verdict);
+        return;
     }
+    double widened[4 * TEXTURE_SLOTS];
+    for (int c = 0; c < 4 * TEXTURE_SLOTS; ++c) widened[c] = double(stack[c]);
+    watcher.watch(watcher.watcher, {number,
+                                    widened,
+                                    {double(v.r), double(v.g), double(v.b), double(v.a)},
+                                    tx->fault_line,
+                                    tx->clamped});
 }
+
+#include "common/textures/as_vectors/interpreter.h"
 
 void run(const Scene& scene, const Paths& paths, int first, int count)
 {
-    for (int i = first; i < first + count; ++i)
-        run_path(scene, paths, i,
-                 [&](int, const float*, const TextureValue& given, const TextureContext& tx) {
-                     const int verdict = texture_verdict(&tx, given);
-                     if (verdict != 0) texture_count(&paths, i, verdict);
-                 });
+    for (int i = first; i < first + count; ++i) run_textures(&scene, &paths, i, Watcher{});
 }
 
 #endif
@@ -115,15 +104,8 @@ extern "C" __attribute__((visibility("default"))) void
 diptych_watch_textures(const SceneView& scene_view, const PathView& path_view, int path,
                        diptych::TextureWatch watch, void* watcher)
 {
-    run_path(scene_from(scene_view), paths_from(path_view), path,
-             [&](int k, const float* stack, const TextureValue& v, const TextureContext& tx) {
-                 double widened[4 * TEXTURE_SLOTS];
-                 for (int c = 0; c < 4 * TEXTURE_SLOTS; ++c) widened[c] = double(stack[c]);
-                 watch(watcher, {k,
-                                 widened,
-                                 {double(v.r), double(v.g), double(v.b), double(v.a)},
-                                 tx.fault_line,
-                                 tx.clamped});
-             });
+    const Scene scene = scene_from(scene_view);
+    const Paths paths = paths_from(path_view);
+    run_textures(&scene, &paths, path, {watch, watcher});
 }
 #endif

@@ -23,6 +23,7 @@ inline Paths paths_from(const PathView& view)
     paths.samples = view.samples;
     paths.pixel_shift = view.pixel_shift;
     paths.turn = view.turn;
+    paths.lookup = view.lookup;
     paths.items = static_cast<decltype(paths.items)>(view.items);
     int row = 0;
 #define BIND_PLANE(planes, name) \

@@ -75,7 +75,6 @@ std::vector<std::string> flags_for(const NativeStageOptions& options)
     std::vector<std::string> flags = {"-std=c++20",
                                       "-shared",
                                       "-fPIC",
-                                      "-g",
                                       "-w",
                                       "-fvisibility=hidden",
                                       "-fno-exceptions",
@@ -89,6 +88,11 @@ std::vector<std::string> flags_for(const NativeStageOptions& options)
                                       std::string("-DVECTORISED=") +
                                           (is_vector && !options.is_debug ? "1" : "0"),
                                       std::string("-DDIALECT_") + (is_double ? "double" : "float")};
+    if (options.kind == NativeStageKind::silent) {
+        flags.insert(flags.end(), {"-O1", "-DALWAYS_INLINE="});
+        return flags;
+    }
+    flags.push_back("-g");
     if (options.is_debug) {
         flags.insert(flags.end(), {"-O0", "-DALWAYS_INLINE="});
         return flags;

@@ -10,8 +10,9 @@
 
 namespace diptych {
 
-// How the stage is compiled: to match a kernel set.
-enum class NativeStageKind { vector, scalar, reference };
+// How the stage is compiled: to match a kernel set; silent: quickly, and so that no debugger stops
+// in it, for what is asked before the rendering.
+enum class NativeStageKind { vector, scalar, reference, silent };
 
 struct NativeStageOptions {
     NativeStageKind kind = NativeStageKind::scalar;

@@ -81,6 +81,7 @@ struct SceneTextures {
     int slots = 1;              // of the interpreter's stack
     int outputs = 0;            // results a path that evaluate_surface reads
     int occlusion_results = 0;  // a path
+    int records = 0;            // a path
     int first_page = 0;         // of the materials' buffer that no longer holds a material
 };
 

@@ -24,7 +24,7 @@ uint word_of(const SceneData& scene, size_t word)
 int program_of(const SceneData& scene, int triangle)
 {
     return scene.materials.at(size_t(scene.triangles.at(size_t(triangle)).material))
-        .texture_program;
+        .texture_program[PROGRAM_SURFACE];
 }
 
 // An argument's numbers, out of the stack or the words of its region.

@@ -9,3 +9,4 @@
 #include "common/stages/record_features.h"
 #include "common/stages/sample_bsdf.h"
 #include "common/stages/sample_light.h"
+#include "common/stages/scale_light.h"

@@ -4,6 +4,7 @@
 
 #include "common/lights/lights.h"
 #include "common/random.h"
+#include "common/stages/scale_light.h"
 #include "common/stages/surface_frame.h"
 
 SHARED void sample_light(const Scene* scene, const Paths* paths, int i)
@@ -45,6 +46,8 @@ SHARED void sample_light(const Scene* scene, const Paths* paths, int i)
     set_shadow_origin(paths, i, origin);
     set_shadow_direction(paths, i, sample.direction);
     set_shadow_distance(paths, i, sample.distance);
-    set_light_contribution(paths, i, select3(is_lit, contribution, none));
+    const float3 lit = select3(is_lit, contribution, none);
+    set_light_contribution(paths, i, lit);
     set_is_occluded(paths, i, 1);
+    if (uses(scene, EFFECT_PROCEDURAL_EMISSION)) record_light(scene, paths, i, light, lit);
 }

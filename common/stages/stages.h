@@ -22,6 +22,7 @@
     X(record_features, shared, first_bounce, 0)                          \
     X(add_emission, shared, each_bounce, LIGHT_EFFECTS | EFFECT_UNLIT)   \
     X(sample_light, shared, each_bounce, LIGHT_EFFECTS)                  \
+    X(scale_light, shared, each_bounce, EFFECT_PROCEDURAL_EMISSION)      \
     X(occlusion, native, each_bounce, LIGHT_EFFECTS)                     \
     X(sample_bsdf, shared, each_bounce, 0)                               \
     X(compact, native, each_bounce, 0)                                   \

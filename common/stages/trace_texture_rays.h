@@ -49,10 +49,8 @@ SHARED float texture_openness(const Scene* scene, const Paths* paths, int i, Tex
 
 SHARED void trace_texture_rays(const Scene* scene, const Paths* paths, int i)
 {
-    const int hit = get_hit_triangle(paths, i);
-    const int triangle = hit < 0 ? 0 : hit;
-    const int program = scene->materials[scene->triangles[triangle].material].texture_program;
-    if ((hit >= 0) & (program != 0) & (get_depth(paths, i) >= 0)) {
+    const int program = texture_program_of(scene, paths, i);
+    if ((program != 0) & (get_depth(paths, i) >= 0)) {
         const TextureRequests requests = texture_requests(scene, program);
         const TexturePlace place = texture_place(scene, paths, i);
         for (int k = 0; k < requests.count; ++k)

@@ -79,6 +79,18 @@ typedef struct {
     int first_occlusion;
 } TextureStep;
 
+// The program that is run where path i asks; 0: none.
+SHARED int texture_program_of(const Scene* scene, const Paths* paths, int i)
+{
+    const int which = paths->lookup == LOOKUP_SURFACE ? PROGRAM_SURFACE : PROGRAM_EMISSION;
+    const int hit = get_hit_triangle(paths, i);
+    const int triangle = hit < 0 ? 0 : hit;
+    const int program =
+        scene->materials[scene->triangles[triangle].material].texture_program[which];
+    const int is_dead = (hit < 0) | (get_depth(paths, i) < 0);
+    return is_dead ? 0 : program;
+}
+
 SHARED TextureProgram texture_program(const Scene* scene, int word)
 {
     TextureProgram program;

@@ -59,9 +59,13 @@ SHARED TextureRay texture_ray(const Scene* scene, const Paths* paths, int i, Tex
     const SampleKey path_key =
         sample_key(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i));
     const uint bits = (uint)(get_depth(paths, i) * 64 + request);
+    const uint where =  // else a surface and what it is lit by would be seen through the same rays
+        paths->lookup == LOOKUP_SURFACE
+            ? 0u
+            : hash_pair((uint)paths->lookup, (uint)(place.triangle ^ place.instance << 16));
     SampleKey key;
     key.index = (uint)ray;
-    key.seed = hash_pair(hash_pair(path_key.seed, path_key.index), bits ^ 0x2545f491u);
+    key.seed = hash_pair(hash_pair(path_key.seed, path_key.index), bits ^ where ^ 0x2545f491u);
     const float2 u = sample_pair(key, 0);
     const int is_lower =
         (hemisphere == HEMISPHERE_LOWER) | ((hemisphere == HEMISPHERE_BOTH) & ((ray & 1) != 0));

@@ -250,6 +250,9 @@ std::string reason_for(const SceneData& scene, unsigned effect)
         });
     case EFFECT_EMISSION_TEXTURE:
         return materials_with(scene, [](const Material& m) { return m.emission_slot >= 0; });
+    case EFFECT_PROCEDURAL_EMISSION:
+        return materials_with(
+            scene, [](const Material& m) { return m.texture_program[PROGRAM_EMISSION] != 0; });
     case EFFECT_ALPHA:
         return materials_with(scene,
                               [](const Material& m) { return m.alpha_mode != ALPHA_OPAQUE; });

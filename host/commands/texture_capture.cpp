@@ -143,7 +143,7 @@ std::vector<CapturedResult> results_of(const SceneData& scene, const StageState&
 {
     const auto* words = reinterpret_cast<const uint*>(scene.materials.data());
     const int material = scene.triangles.at(size_t(path.hit.triangle)).material;
-    const int program = scene.materials.at(size_t(material)).texture_program;
+    const int program = scene.materials.at(size_t(material)).texture_program[PROGRAM_SURFACE];
     std::vector<CapturedResult> results;
     for (int k = 0; k < int(words[program]); ++k) {
         const int step = program + TEXTURE_PROGRAM_WORDS + k * TEXTURE_STEP_WORDS;
@@ -272,7 +272,7 @@ SceneData load_for_replay(const TextureCapture& capture, SceneFlags flags, const
         const bool is_inside = hit.triangle >= 0 && size_t(hit.triangle) < scene.triangles.size() &&
                                hit.instance >= 0 && size_t(hit.instance) < scene.instances.size();
         if (!is_inside || scene.materials[size_t(scene.triangles[size_t(hit.triangle)].material)]
-                                  .texture_program == 0)
+                                  .texture_program[PROGRAM_SURFACE] == 0)
             throw std::runtime_error(path + ": names a hit that the scene does not have; capture "
                                             "it again");
     }

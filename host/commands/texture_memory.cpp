@@ -175,9 +175,11 @@ json texture_memory(const SceneData& scene)
     for (int m = 0; m < count; ++m) {
         json entry = {
             {"page", m}, {"name", memory.material_name(m)}, {"regions", of_material[size_t(m)]}};
-        if (const int program = scene.materials[size_t(m)].texture_program) {
-            entry["program_page"] = program / page_words;
-            programs.push_back(memory.program(m, program));
+        const int* own = scene.materials[size_t(m)].texture_program;
+        if (const int program = own[PROGRAM_SURFACE]) entry["program_page"] = program / page_words;
+        for (const int which : {PROGRAM_SURFACE, PROGRAM_ALPHA, PROGRAM_EMISSION}) {
+            const bool is_shared = which != PROGRAM_SURFACE && own[which] == own[PROGRAM_SURFACE];
+            if (own[which] != 0 && !is_shared) programs.push_back(memory.program(m, own[which]));
         }
         materials.push_back(entry);
     }

@@ -80,6 +80,8 @@ void SceneAssembly::add_triangle_lights(std::vector<double>& powers)
             light.edge1 = to_float4(e1);
             light.edge2 = to_float4(e2);
             light.emission = {float(mean[0]), float(mean[1]), float(mean[2]), 0};
+            const Material& material = data_.materials[size_t(t.material)];
+            if (material.emission_slot == TEXTURE_PROCEDURAL) light.emission = material.emission;
             light.triangle = triangle_id;
             light.instance = int(n);
             light.normal_sign = instance.is_mirrored ? -1.0f : 1.0f;
@@ -98,6 +100,7 @@ void SceneAssembly::add_punctual_lights(std::vector<double>& powers)
         }
         data_.lights.push_back(packed_light(light));
         powers.push_back(power);
+        data_.effects |= EFFECT_PUNCTUAL_LIGHTS & ~builder_.disabled_effects_;
     }
 }
 
@@ -138,7 +141,7 @@ void SceneAssembly::assemble_lights()
     if (settings.environment_light >= 0) {
         settings.environment_probability = data_.lights.back().emission.w;
     }
-    for (size_t m = 0; m < data_.materials.size(); ++m) {
+    for (size_t m = 0; m < mean_emission_.size(); ++m) {
         const auto& mean = mean_emission_[m];
         const double density = pi * luminance(mean[0], mean[1], mean[2]) / total;
         data_.materials[m].emission.w = total > 0 ? float(density) : 0.0f;

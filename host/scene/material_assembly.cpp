@@ -269,9 +269,6 @@ void SceneAssembly::assemble_materials()
                 data_.materials.back().emission_slot < 0 ? -1 : input.emission_texture.image;
             const float4 e = data_.materials.back().emission;
             mean = {e.x, e.y, e.z};
-            if (data_.materials.back().emission_slot == TEXTURE_PROCEDURAL) {
-                mean = {0, 0, 0};  // found by scattered rays alone: its power is not known
-            }
             for (size_t c = 0; c < 3 && image >= 0; ++c) {
                 mean[c] *= pictures_[size_t(image)].mean_srgb[c];
             }
@@ -305,11 +302,6 @@ void SceneAssembly::assemble_effects()
     }
     for (const Image& image : data_.images) {
         set_if(image.encoding == TEXELS_FLOAT, EFFECT_FLOAT_TEXTURES);
-    }
-    for (const Light& light : data_.lights) {
-        set_if(light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT ||
-                   light.kind == LIGHT_DIRECTIONAL,
-               EFFECT_PUNCTUAL_LIGHTS);
     }
     const Settings& settings = data_.settings[0];
     set_if(settings.environment_width > 0, EFFECT_ENVIRONMENT);

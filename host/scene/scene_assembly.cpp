@@ -146,9 +146,10 @@ SceneData SceneAssembly::run()
         const auto& [map, rotation, scale] = *builder_.environment_;
         environment_power_ = assemble_environment(map, rotation, scale, data_);
     }
-    assemble_lights();
     assemble_effects();
     assemble_textures();
+    estimate_emitters();
+    assemble_lights();
     tell_what_was_repaired();
     return std::move(data_);
 }

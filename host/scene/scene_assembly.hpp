@@ -57,6 +57,9 @@ private:
     void survey_textures();
     void assemble_textures();
 
+    // emitter_power.cpp
+    void estimate_emitters();
+
     // light_assembly.cpp
     void assemble_lights();
     void add_triangle_lights(std::vector<double>& powers);
@@ -84,7 +87,7 @@ private:
     std::vector<char> node_used_;  // by some material in use, directly or through others
     unsigned attributes_ = 0;      // that the textures in use ask for
     std::vector<PictureFacts> pictures_;
-    std::vector<std::array<double, 3>> mean_emission_;  // by material
+    std::vector<std::array<double, 3>> mean_emission_;  // by material; painted ones: estimated
     double environment_power_ = 0;  // luminance of its radiance, over all directions; 0 without
 };
 

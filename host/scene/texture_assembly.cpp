@@ -131,9 +131,10 @@ public:
                                 : 0.1 * double(assembly.data_.settings[0].scene_radius);
     }
 
-    // `roots`: nodes of the material's slots; `outputs`: of a node, a mask over the results that
-    // evaluate_surface reads.
-    void add_material(size_t m, const std::vector<int>& roots, const std::map<int, int>& outputs)
+    // The program `which` (PROGRAM_*) of a material. `roots`: the nodes that it is for; `outputs`:
+    // of a node, a mask over the results that other stages read.
+    void add_material(size_t m, int which, const std::vector<int>& roots,
+                      const std::map<int, int>& outputs)
     {
         const GraphProgram order = texture_order(assembly_.builder_.texture_nodes_, roots);
         textures_.slots = std::max(textures_.slots, order.slots);
@@ -142,9 +143,16 @@ public:
             const auto output = outputs.find(step.node);
             add_step(m, step, output == outputs.end() ? 0 : output->second, program);
         }
-        assembly_.data_.materials[m].texture_program = add_program(program);
+        assembly_.data_.materials[m].texture_program[which] = add_program(program);
         textures_.occlusion_results =
             std::max(textures_.occlusion_results, int(program.requests.size()));
+    }
+
+    // Where `which` wants no more and no less than the whole surface.
+    void share_program(size_t m, int which)
+    {
+        int* programs = assembly_.data_.materials[m].texture_program;
+        programs[which] = programs[PROGRAM_SURFACE];
     }
 
     void finish() { pages_.append_to(assembly_.data_.materials); }
@@ -285,7 +293,18 @@ void SceneAssembly::assemble_textures()
             roots.push_back(slots[s]->node);
             outputs[slots[s]->node] |= 1 << output;
         }
-        if (!roots.empty()) pages.add_material(m, roots, outputs);
+        if (roots.empty()) continue;
+        pages.add_material(m, PROGRAM_SURFACE, roots, outputs);
+        if (packed[SLOT_EMISSION] != TEXTURE_PROCEDURAL) continue;
+        if (roots.size() > 1) {
+            const int emission = slots[SLOT_EMISSION]->node;
+            pages.add_material(m, PROGRAM_EMISSION, {emission},
+                               {{emission, 1 << settings.texture_output[SLOT_EMISSION]}});
+        } else {
+            pages.share_program(m, PROGRAM_EMISSION);
+        }
+        textures.records = 1;
+        data_.effects |= EFFECT_PROCEDURAL_EMISSION;
     }
     pages.finish();
     data_.effects |= EFFECT_PROCEDURAL;

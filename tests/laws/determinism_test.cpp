@@ -132,8 +132,7 @@ TEST_P(Determinism, AnEffectNotCalledForChangesNoPixel)
         EXPECT_TRUE(is_same(expected, image::beauty_of(more.film.picture()).pixels)) << name;
     };
     // A users' texture is code that must be there: nothing to switch on.
-    const unsigned possible =
-        ~(plain.effects | EFFECT_ORTHOGRAPHIC | EFFECT_PROCEDURAL | EFFECT_TEXTURE_OCCLUSION);
+    const unsigned possible = ~(plain.effects | EFFECT_ORTHOGRAPHIC | USER_TEXTURE_EFFECTS);
     unsigned all = 0;
 #define ADD_EFFECT(name, bit, words)                          \
     all |= EFFECT_##name & possible;                          \
