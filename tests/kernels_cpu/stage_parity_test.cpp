@@ -39,7 +39,7 @@ void expect_parity(Backend& a, Backend& b, SceneData scene, const Bound& bound,
                       << result.first->b;
 #define EXPECT_COMPARED(name, body, when, needs)                             \
     if (STAGE_##name != STAGE_compact && STAGE_##name != STAGE_accumulate && \
-        ((needs) & USER_TEXTURE_EFFECTS) == 0) {                             \
+        ((needs)&USER_TEXTURE_EFFECTS) == 0) {                               \
         EXPECT_GT(result.stages[STAGE_##name].paths, 0) << #name;            \
         EXPECT_GT(result.stages[STAGE_##name].values, 0) << #name;           \
     }
