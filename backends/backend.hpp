@@ -61,6 +61,7 @@ struct Statistics {
     double setup_seconds = 0;                     // structures, programs
     unsigned long long rays = 0;
     unsigned long long shadow_rays = 0;
+    unsigned long long undecided_rays = 0;  // see most_alpha_layers
     unsigned long long paths = 0;
 };
 

@@ -199,8 +199,8 @@ void CpuBackend::build_embree(const SceneData& scene)
                           k == 0 ? nullptr : &instance.to_world_x.x});
     }
     embree_.reset();
-    embree_ = std::make_unique<EmbreeScene>(meshes.data(), int(meshes.size()), threads_,
-                                            (scene.effects & EFFECT_ALPHA) != 0);
+    embree_ =
+        std::make_unique<EmbreeScene>(meshes.data(), int(meshes.size()), threads_, scene.effects);
 }
 
 void CpuBackend::build_textures(const SceneData& scene)
@@ -345,6 +345,7 @@ Statistics CpuBackend::statistics() const
         STAGES(ADD_STAGE)
         statistics.rays += chunk->rays;
         statistics.shadow_rays += chunk->shadow_rays;
+        statistics.undecided_rays += chunk->undecided_rays;
         statistics.paths += chunk->paths;
     }
     return statistics;

@@ -64,10 +64,17 @@ private:
     void make_kernel(Stage stage);
     void bind_buffers(StageKernel& stage);
     void begin(const Dispatch& dispatch);
+    // Paths to work on: those of a list, or the first `count` of all.
+    struct Selection {
+        int count = 0;
+        const opencl::Buffer* list = nullptr;
+    };
+
     void run(Stage stage, int count, bool is_compacted);
-    void launch_over(Stage stage, int lookup, int count, bool is_compacted);
-    void show_records(StageKernel& kernel, int lookup);
+    void launch_over(Stage stage, int lookup, const Selection& paths);
+    void show_records(StageKernel& kernel, Stage stage, int lookup);
     int compact(int count, bool is_compacted, bool keeps_order);
+    int select(const opencl::Buffer& marks, const Selection& from, const opencl::Buffer* to);
     int groups_of(int paths) const;
     void launch(const opencl::Kernel& kernel, Stage stage, int paths, int groups);
     void collect_times();
@@ -259,74 +266,93 @@ void OpenclBackend::begin(const Dispatch& dispatch)
 }
 
 // Binds the planes of the records in the place of the path's own, or these again.
-void OpenclBackend::show_records(StageKernel& runs, int lookup)
+void OpenclBackend::show_records(StageKernel& runs, Stage stage, int lookup)
 {
     if (runs.lookup == lookup) return;
     runs.lookup = lookup;
+    runs.kernel.set(argument(LOOKUP), lookup);
     const int first = int(scene_.size());
-    const bool is_own = lookup == LOOKUP_SURFACE;
-    for (const StandIn& record : shadow_records) {
+    const bool is_own = !is_over_records(stage, lookup);
+    for (const StandIn& record : lookup == LOOKUP_ALPHA ? path_records : shadow_records) {
         const std::vector<opencl::Buffer>& planes =
             record.is_texture_row && !is_own ? memory_.texture_planes : memory_.path_planes;
         runs.kernel.set(first + record.row, planes[size_t(is_own ? record.row : record.by)]);
     }
-    runs.kernel.set(argument(LOOKUP), lookup);
 }
 
-// A stage, after the lookups of textures that it waits for.
+// A stage, with the lookups of textures that belong to it.
 void OpenclBackend::run(Stage stage, int count, bool is_compacted)
 {
-    if (stage == STAGE_scale_light)
-        look_up_textures(effects_, LOOKUP_EMISSION, [&](Stage textures, int lookup) {
-            launch_over(textures, lookup, count, is_compacted);
-        });
-    launch_over(stage, LOOKUP_SURFACE, count, is_compacted);
+    const Selection all{count, is_compacted ? &memory_.live[0] : nullptr};
+    Selection waiting = all;
+    int turn = 0;
+    const auto launch = [&](Stage launched, int lookup) {
+        const bool is_rounds = lookup == LOOKUP_ALPHA || lookup == LOOKUP_SHADOW;
+        launch_over(launched, lookup, is_rounds ? waiting : all);
+    };
+    const auto count_waiting = [&] {
+        const opencl::Buffer& list = memory_.waiting[turn];
+        turn = 1 - turn;
+        waiting = {select(memory_.texture_planes[row_record_triangle], waiting, &list), &list};
+        return waiting.count;
+    };
+    const int undecided = run_with_lookups(stage, effects_, launch, count_waiting);
+    statistics_.undecided_rays += unsigned(undecided);
 }
 
-void OpenclBackend::launch_over(Stage stage, int lookup, int count, bool is_compacted)
+void OpenclBackend::launch_over(Stage stage, int lookup, const Selection& paths)
 {
     StageKernel& runs = kernels_[stage];
-    show_records(runs, lookup);
-    runs.kernel.set(argument(LIVE), memory_.live[0]);
-    runs.kernel.set(argument(IS_COMPACTED), is_compacted ? 1 : 0);
-    for (int first = 0; first < count;) {
+    show_records(runs, stage, lookup);
+    runs.kernel.set(argument(LIVE), paths.list ? *paths.list : memory_.live[0]);
+    runs.kernel.set(argument(IS_COMPACTED), paths.list ? 1 : 0);
+    for (int first = 0; first < paths.count;) {
         const double allowed = 1e-3 * options_.launch_milliseconds;
-        const int launched = std::min(count - first, runs.paths_per_launch(allowed));
+        const int launched = std::min(paths.count - first, runs.paths_per_launch(allowed));
         runs.kernel.set(argument(FIRST), first);
         runs.kernel.set(argument(COUNT), launched);
         launch(runs.kernel, stage, launched, groups_of(launched));
         if (runs.seconds_per_path <= 0) collect_times();
         first += launched;
     }
-    if (stage == STAGE_intersect) statistics_.rays += unsigned(count);
-    if (stage == STAGE_occlusion) statistics_.shadow_rays += unsigned(count);
+    if (stage == STAGE_intersect) statistics_.rays += unsigned(paths.count);
+    if (stage == STAGE_occlusion) statistics_.shadow_rays += unsigned(paths.count);
 }
 
 // The number of live paths; their list becomes live[0], unless the order is to be kept.
 int OpenclBackend::compact(int count, bool is_compacted, bool keeps_order)
 {
+    const Selection from{count, is_compacted ? &memory_.live[0] : nullptr};
     const opencl::Buffer& depth = memory_.path_planes[row_depth];
+    const int live = select(depth, from, keeps_order ? nullptr : &memory_.live[1]);
+    if (!keeps_order) std::swap(memory_.live[0], memory_.live[1]);
+    return live;
+}
+
+// How many paths have a mark that is not negative; their list goes to `to`, if there is one.
+int OpenclBackend::select(const opencl::Buffer& marks, const Selection& from,
+                          const opencl::Buffer* to)
+{
     for (opencl::Kernel* kernel : {&compact_count_, &compact_write_}) {
-        kernel->set(0, depth);
-        kernel->set(1, memory_.live[0]);
-        kernel->set(2, is_compacted ? 1 : 0);
-        kernel->set(3, count);
+        kernel->set(0, marks);
+        kernel->set(1, from.list ? *from.list : memory_.live[0]);
+        kernel->set(2, from.list ? 1 : 0);
+        kernel->set(3, from.count);
         kernel->set(4, memory_.sums);
     }
-    launch(compact_count_, STAGE_compact, count, groups_of(count));
+    launch(compact_count_, STAGE_compact, from.count, groups_of(from.count));
     compact_scan_.set(0, memory_.sums);
-    compact_scan_.set(1, groups_of(count));
+    compact_scan_.set(1, groups_of(from.count));
     compact_scan_.set(2, memory_.total);
-    launch(compact_scan_, STAGE_compact, count, 1);
-    if (!keeps_order) {
-        compact_write_.set(5, memory_.live[1]);
-        launch(compact_write_, STAGE_compact, count, groups_of(count));
-        std::swap(memory_.live[0], memory_.live[1]);
+    launch(compact_scan_, STAGE_compact, from.count, 1);
+    if (to) {
+        compact_write_.set(5, *to);
+        launch(compact_write_, STAGE_compact, from.count, groups_of(from.count));
     }
-    int live = 0;
-    queue_.read(memory_.total, sizeof live, &live);
+    int selected = 0;
+    queue_.read(memory_.total, sizeof selected, &selected);
     collect_times();
-    return live;
+    return selected;
 }
 
 int OpenclBackend::groups_of(int paths) const
@@ -439,7 +465,8 @@ void OpenclBackend::trace(const Dispatch& dispatch,
         for (int k = 0; k < STAGE_COUNT && live > 0; ++k) {
             const Stage stage = Stage(k);
             const When when = stage_when(stage);
-            const bool is_due = when == When::each_bounce || (when != When::at_end && bounce == 0);
+            const bool is_first = when == When::once || when == When::first_bounce;
+            const bool is_due = when == When::each_bounce || (is_first && bounce == 0);
             if (!is_due || !is_active(stage, effects_)) continue;
             if (stage == STAGE_compact) {
                 live = compact(paths_, false, true);

@@ -34,9 +34,13 @@ std::vector<PlaneRow> texture_planes_of(const SceneData& scene)
     return {TEXTURE_BUFFERS(NUMBERED_ROW)};
 }
 
+// Whether rays may wait for textures.
+bool has_rounds(const SceneData& scene) { return (scene.effects & EFFECT_PROCEDURAL_ALPHA) != 0; }
+
 size_t item_bytes(const SceneData& scene)
 {
-    const size_t lists = 3 * sizeof(int);  // live, twice, and at most one sum a path
+    // live, twice, and at most one sum a path; waiting, twice
+    const size_t lists = (has_rounds(scene) ? 5 : 3) * sizeof(int);
     const size_t planes = plane_bytes(path_rows) + plane_bytes(texture_planes_of(scene));
     return paths_per_item * (planes + lists) +
            results_per_item *
@@ -140,6 +144,9 @@ DispatchMemory::DispatchMemory(const opencl::Context& context, const SceneData& 
       items(context.buffer(sizeof(WorkItem) * small_items * size_t(item_count), "items"))
 {
     for (opencl::Buffer& list : live) list = context.buffer(sizeof(int) * size_t(paths), "live");
+    if (has_rounds(scene))
+        for (opencl::Buffer& list : waiting)
+            list = context.buffer(sizeof(int) * size_t(paths), "waiting");
     const int groups = (paths + group_size - 1) / group_size;
     sums = context.buffer(sizeof(int) * size_t(groups), "sums");
     total = context.buffer(sizeof(int), "total");

@@ -35,8 +35,9 @@ struct DispatchMemory {
     std::vector<opencl::Buffer> texture_planes;
     std::vector<opencl::Buffer> texture_result_planes;
     opencl::Buffer items;
-    opencl::Buffer live[2];  // lists of live paths: this bounce's and the next one's
-    opencl::Buffer sums;     // one of each work-group of the compaction
+    opencl::Buffer live[2];     // lists of live paths: this bounce's and the next one's
+    opencl::Buffer waiting[2];  // likewise of paths whose rays wait for textures
+    opencl::Buffer sums;        // one of each work-group of the compaction
     opencl::Buffer total;
 };
 

@@ -29,10 +29,11 @@ struct SceneData {
 };
 
 // How many planes each row of TEXTURE_BUFFERS has, and of TEXTURE_RESULT_BUFFERS.
-inline std::array<int, 4> texture_planes(const SceneData& scene)
+inline std::array<int, 5> texture_planes(const SceneData& scene)
 {
     const SceneTextures& textures = scene.textures;
-    return {textures.occlusion_results, 4 * textures.outputs, textures.records, textures.records};
+    const int records = textures.records;
+    return {textures.occlusion_results, 4 * textures.outputs, records, records, records};
 }
 inline std::array<int, 1> texture_result_planes(const SceneData& scene)
 {

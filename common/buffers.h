@@ -85,13 +85,16 @@
     X(float, occlusion_result) \
     X(float, texture_result)   \
     X(int, record_triangle)    \
-    X(int, record_instance)
+    X(int, record_instance)    \
+    X(float, record_distance)
 
 // Textures are asked at the place that a path has met, or at its record. Whoever launches a stage
 // for records hands it a view where their planes stand for hit_triangle and hit_instance, and those
 // of the ray that leads there for ray_origin and ray_direction: the stage is the same.
 #define LOOKUP_SURFACE 0   // at the place that the path has met
 #define LOOKUP_EMISSION 1  // at the point chosen on a light
+#define LOOKUP_ALPHA 2     // where the path's ray has been stopped, to learn whether it stays so
+#define LOOKUP_SHADOW 3    // likewise the shadow ray
 
 // What may be wrong with an evaluation of a texture; each is counted for its path's pixel.
 #define TEXTURE_FAULT_NOT_FINITE 0  // evaluations whose result was replaced

@@ -14,6 +14,30 @@ typedef struct {
     int instance;
 } Hit;
 
+// What tells which surfaces stop a ray: its number for the decisions of common/alpha.h, and the
+// last surface behind which it goes on; that one's triangle -1: none yet.
+typedef struct {
+    uint seed;
+    Hit passed;
+} BvhAlpha;
+
+SHARED BvhAlpha bvh_alpha(uint seed)
+{
+    const Hit none = {0.0f, -1, -1};
+    BvhAlpha alpha;
+    alpha.seed = seed;
+    alpha.passed = none;
+    return alpha;
+}
+
+// Hits have an order along the ray, that of equal distances included.
+SHARED int bvh_is_behind(Hit hit, Hit passed)
+{
+    const int is_later = (hit.instance > passed.instance) |
+                         ((hit.instance == passed.instance) & (hit.triangle > passed.triangle));
+    return (hit.t > passed.t) | ((hit.t == passed.t) & is_later);
+}
+
 // A ray in the space of the tree that is being walked.
 typedef struct {
     TriangleRay triangle;
@@ -88,17 +112,25 @@ SHARED float bvh_child_entry(const Scene* scene, const BvhRay* ray, int node, in
     return bvh_box_entry(ray, low, high, t_max);
 }
 
-SHARED int bvh_is_transparent(const Scene* scene, Hit hit, TriangleHit at, uint seed)
+SHARED int bvh_is_transparent(const Scene* scene, Hit hit, TriangleHit at, BvhAlpha alpha)
 {
     if (!uses(scene, EFFECT_ALPHA)) return 0;
+    if (uses(scene, EFFECT_PROCEDURAL_ALPHA) && !bvh_is_behind(hit, alpha.passed)) return 1;
     const int material = scene->triangles[hit.triangle].material;
     if (scene->materials[material].alpha_mode == ALPHA_OPAQUE) return 0;
-    return !alpha_accepts(scene, hit.instance, hit.triangle, at.u, at.v, seed);
+    return !alpha_accepts(scene, hit.instance, hit.triangle, at.u, at.v, alpha.seed);
+}
+
+// Whether a hit is the end of the search for any.
+SHARED int bvh_is_decided(const Scene* scene, Hit hit)
+{
+    if (hit.triangle < 0) return 0;
+    return !uses(scene, EFFECT_PROCEDURAL_ALPHA) || !alpha_is_asked(scene, hit.triangle);
 }
 
 // The nearest of `best` and the triangles of a leaf.
 SHARED Hit bvh_leaf(const Scene* scene, const BvhRay* ray, int leaf, Hit best, int instance,
-                    uint seed)
+                    BvhAlpha alpha)
 {
     const int first = BVH_LEAF_FIRST(leaf);
     const int count = BVH_LEAF_COUNT(leaf);
@@ -113,7 +145,7 @@ SHARED Hit bvh_leaf(const Scene* scene, const BvhRay* ray, int leaf, Hit best, i
             (instance < best.instance) | ((instance == best.instance) & (id < best.triangle));
         const int is_nearer = (at.t < best.t) | (best.triangle < 0) | is_first;
         const Hit hit = {at.t, id, instance};
-        if (at.is_hit & is_nearer && !bvh_is_transparent(scene, hit, at, seed)) best = hit;
+        if (at.is_hit & is_nearer && !bvh_is_transparent(scene, hit, at, alpha)) best = hit;
     }
     return best;
 }
@@ -143,9 +175,10 @@ SHARED BvhStep bvh_visit(const Scene* scene, const BvhRay* ray, int node, float 
 #define BVH_TOP_LEVEL (-1)
 
 // The builder bounds the depth of the trees, and with it the stack: a level leaves at most one
-// entry. `is_any`: the first hit found will do.
-SHARED Hit bvh_walk(const Scene* scene, float3 origin, float3 direction, float t_max, uint seed,
-                    int is_any)
+// entry. `is_any`: the first hit found will do, unless a texture has to be asked about it: then the
+// nearest such, which may hide others that need no asking.
+SHARED Hit bvh_walk(const Scene* scene, float3 origin, float3 direction, float t_max,
+                    BvhAlpha alpha, int is_any)
 {
     int stack[BVH_STACK];
     float stack_entry[BVH_STACK];
@@ -172,9 +205,9 @@ SHARED Hit bvh_walk(const Scene* scene, float3 origin, float3 direction, float t
             base = size;
             next = scene->instances[instance].root_node;
         } else {
-            best = bvh_leaf(scene, &ray, next, best, instance, seed);
+            best = bvh_leaf(scene, &ray, next, best, instance, alpha);
             next = BVH_NONE;
-            if (is_any && best.triangle >= 0) size = 0;
+            if (is_any && bvh_is_decided(scene, best)) size = 0;
         }
         while (next == BVH_NONE && size > 0) {
             if (uses(scene, EFFECT_INSTANCES) && size == base) {
@@ -189,14 +222,42 @@ SHARED Hit bvh_walk(const Scene* scene, float3 origin, float3 direction, float t
 }
 
 // The first hit at 0 < t <= t_max. The direction has unit length; the seed decides about surfaces
-// with holes (common/alpha.h).
+// with holes (common/alpha.h); those that a texture makes stop it.
 SHARED Hit bvh_closest(const Scene* scene, float3 origin, float3 direction, float t_max, uint seed)
 {
-    return bvh_walk(scene, origin, direction, t_max, seed, 0);
+    return bvh_walk(scene, origin, direction, t_max, bvh_alpha(seed), 0);
 }
 
 // Whether anything lies between the origin and t_max.
 SHARED int bvh_occluded(const Scene* scene, float3 origin, float3 direction, float t_max, uint seed)
 {
-    return bvh_walk(scene, origin, direction, t_max, seed, 1).triangle >= 0;
+    return bvh_walk(scene, origin, direction, t_max, bvh_alpha(seed), 1).triangle >= 0;
+}
+
+// Of a ray that goes on behind its record; from the start in the first round.
+SHARED BvhAlpha bvh_alpha_of(const Paths* paths, int i, uint seed)
+{
+    BvhAlpha alpha = bvh_alpha(seed);
+    if (paths->lookup != LOOKUP_SURFACE) {
+        alpha.passed.t = get_record_distance(paths, 0, i);
+        alpha.passed.instance = get_record_instance(paths, 0, i);
+        alpha.passed.triangle = get_record_triangle(paths, 0, i);
+    }
+    return alpha;
+}
+
+// Leaves a record of a hit about which a texture has to be asked.
+SHARED void bvh_record(const Scene* scene, const Paths* paths, int i, Hit hit)
+{
+    const int is_hit = hit.triangle >= 0;
+    const int is_asked = is_hit & alpha_is_asked(scene, is_hit ? hit.triangle : 0);
+    set_record_triangle(paths, 0, i, is_asked ? hit.triangle : -1);
+    set_record_instance(paths, 0, i, hit.instance);
+    set_record_distance(paths, 0, i, hit.t);
+}
+
+// Whether the ray is to be followed in this round.
+SHARED int bvh_is_waiting(const Paths* paths, int i)
+{
+    return paths->lookup == LOOKUP_SURFACE || get_record_triangle(paths, 0, i) >= 0;
 }

@@ -21,14 +21,14 @@
     X(ORTHOGRAPHIC, 14, "an orthographic camera")                            \
     X(PROCEDURAL, 15, "procedural textures")                                 \
     X(TEXTURE_OCCLUSION, 16, "occlusion that textures ask for")              \
-    X(PROCEDURAL_EMISSION, 17, "procedural textures on lights")
+    X(PROCEDURAL_EMISSION, 17, "procedural textures on lights")              \
+    X(PROCEDURAL_ALPHA, 18, "alpha from procedural textures")
 
 #define EFFECT_BIT(name, bit, words) EFFECT_##name = 1 << bit,
 enum { EFFECTS_LIST(EFFECT_BIT) };
 
 // What calls for users' code, and for the stages about it.
-#define USER_TEXTURE_EFFECTS \
-    (EFFECT_PROCEDURAL | EFFECT_TEXTURE_OCCLUSION | EFFECT_PROCEDURAL_EMISSION)
+#define USER_TEXTURE_EFFECTS (EFFECT_PROCEDURAL | EFFECT_TEXTURE_OCCLUSION | RECORD_EFFECTS)
 
 // What asks textures away from the place that a path has met.
-#define RECORD_EFFECTS EFFECT_PROCEDURAL_EMISSION
+#define RECORD_EFFECTS (EFFECT_PROCEDURAL_EMISSION | EFFECT_PROCEDURAL_ALPHA)

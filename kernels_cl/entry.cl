@@ -17,6 +17,7 @@
 
 #define RUN_once(stage, k) stage(&scene, &paths, k)
 #define RUN_each_bounce(stage, k) stage(&scene, &paths, is_compacted ? live[k] : k)
+#define RUN_each_layer(stage, k) RUN_each_bounce(stage, k)
 #define RUN_first_bounce(stage, k) RUN_each_bounce(stage, k)
 #define RUN_at_end(stage, k) \
     for (; paths.turn < samples; ++paths.turn) stage(&scene, &paths, k)

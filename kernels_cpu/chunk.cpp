@@ -66,7 +66,7 @@ Chunk::Chunk(const KernelSet& kernels, const EmbreeScene* embree, const SceneVie
     view_.capacity = capacity;
     view_.planes = planes_.data();
     view_.texture_planes = texture_planes_.data();
-    shadow_records_ = RecordView(view_, shadow_records);
+    records_ = RecordViews(view_);
 }
 
 void Chunk::run(const PathView& results, int first_result, const void* item)
@@ -121,11 +121,10 @@ void Chunk::trace_paths(int count)
 
 void Chunk::run_stage(Stage stage, int count)
 {
-    if (stage == STAGE_scale_light)
-        look_up_textures(scene_.effects, LOOKUP_EMISSION, [&](Stage textures, int lookup) {
-            run_stage(textures, shadow_records_.of(view_, lookup), count);
-        });
-    run_stage(stage, view_, count);
+    const int undecided = records_.run(
+        stage, scene_.effects, view_, count,
+        [&](Stage launched, const PathView& view) { run_stage(launched, view, count); });
+    undecided_rays += std::uint64_t(undecided);
 }
 
 void Chunk::run_stage(Stage stage, const PathView& view, int count)

@@ -27,6 +27,7 @@ public:
     std::array<double, STAGE_COUNT> stage_seconds{};
     std::uint64_t rays = 0;
     std::uint64_t shadow_rays = 0;
+    std::uint64_t undecided_rays = 0;
     std::uint64_t paths = 0;
 
 private:
@@ -46,7 +47,7 @@ private:
     std::vector<int> slots_;
     std::vector<int> live_;
     PathView view_;
-    RecordView shadow_records_;
+    RecordViews records_;
     int bounce_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -63,11 +64,23 @@ struct PacketContext {
     // The best hit so far of each ray of the packet: its distance, then instance and triangle.
     float best_distance[width];
     std::uint64_t best_place[width];
+    // Where textures give the alpha of surfaces: behind which each ray goes on, whether it is after
+    // these surfaces alone, and whether the way of a shadow ray holds any.
+    float passed_distance[width];
+    std::uint64_t passed_place[width];
+    bool seeks_asked = false;
+    bool has_asked[width];
 };
 
 int instance_of(unsigned embree_instance)
 {
     return embree_instance == RTC_INVALID_GEOMETRY_ID ? 0 : int(embree_instance);
+}
+
+// The order of hits at equal distance: the world's triangles first.
+std::uint64_t place_of(std::uint64_t instance, std::uint64_t triangle_of_mesh)
+{
+    return (instance == 0 ? 0 : instance + 1) << 32 | triangle_of_mesh;
 }
 
 // Alpha: hits that let the ray through are not hits.
@@ -119,32 +132,115 @@ void filter_alpha_then_ties(const RTCFilterFunctionNArguments* arguments)
     filter_ties(arguments);
 }
 
+bool is_asked(const PacketContext& context, const RTCFilterFunctionNArguments* arguments,
+              unsigned k)
+{
+    const int instance = instance_of(RTCHitN_instID(arguments->hit, arguments->N, k, 0));
+    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, k);
+    return alpha_is_asked(&context.views->scene, context.first_triangle[instance] + int(triangle));
+}
+
+// What lies behind the surface that the ray has passed last. A ray meets no triangle twice,
+// whatever the rounding of another packet's arithmetic makes of its distance.
+void filter_passed(const RTCFilterFunctionNArguments* arguments)
+{
+    const auto* context = reinterpret_cast<const PacketContext*>(arguments->context);
+    const unsigned n = arguments->N;
+    for (unsigned k = 0; k < n; ++k) {
+        if (arguments->valid[k] != -1) continue;
+        const unsigned lane = RTCRayN_id(arguments->ray, n, k);
+        const float distance = RTCRayN_tfar(arguments->ray, n, k);
+        const int instance = instance_of(RTCHitN_instID(arguments->hit, n, k, 0));
+        const std::uint64_t place =
+            place_of(std::uint64_t(instance), RTCHitN_primID(arguments->hit, n, k));
+        const float passed = context->passed_distance[lane];
+        const std::uint64_t last = context->passed_place[lane];
+        const bool is_behind = distance > passed || (distance == passed && place > last);
+        const bool is_wanted = !context->seeks_asked || is_asked(*context, arguments, k);
+        if (!is_behind || (passed > 0 && place == last) || !is_wanted) arguments->valid[k] = 0;
+    }
+}
+
+void filter_passed_then_alpha(const RTCFilterFunctionNArguments* arguments)
+{
+    filter_passed(arguments);
+    filter_alpha_then_ties(arguments);
+}
+
+// Shadow rays: surfaces about which a texture has to be asked stop none yet. Where there are no
+// records to ask by, they do.
+void filter_asked_then_alpha(const RTCFilterFunctionNArguments* arguments)
+{
+    auto* context = reinterpret_cast<PacketContext*>(arguments->context);
+    const bool has_records = context->views->paths.record_triangle != nullptr;
+    for (unsigned k = 0; has_records && k < arguments->N; ++k) {
+        if (arguments->valid[k] != -1 || !is_asked(*context, arguments, k)) continue;
+        context->has_asked[RTCRayN_id(arguments->ray, arguments->N, k)] = true;
+        arguments->valid[k] = 0;
+    }
+    filter_alpha(arguments);
+}
+
+// Begins a query for path i in a lane: from the start, or behind the record of the path. Returns
+// the distance from which on hits matter, a little less than the record's.
+float begin_lane(PacketContext& context, const Paths& paths, int lane, int i, bool is_alive)
+{
+    context.path[lane] = i;
+    context.best_distance[lane] = far_away;
+    context.best_place[lane] = ~std::uint64_t(0);
+    context.passed_distance[lane] = 0;
+    context.passed_place[lane] = 0;
+    if (paths.lookup == LOOKUP_SURFACE || !is_alive) return 0;
+    const int instance = paths.record_instance[i];
+    context.passed_distance[lane] = paths.record_distance[i];
+    context.passed_place[lane] =
+        place_of(std::uint64_t(instance),
+                 std::uint64_t(paths.record_triangle[i] - context.first_triangle[instance]));
+    return paths.record_distance[i] * 0.99999f;
+}
+
+// Whether path i has a ray in this round.
+bool is_waiting(const Paths& paths, int i)
+{
+    return paths.lookup == LOOKUP_SURFACE || paths.record_triangle[i] >= 0;
+}
+
+// Leaves a record of what a ray met, if a texture has to be asked about it; triangle -1: nothing.
+void leave_record(const Views& views, int i, int instance, int triangle, float distance)
+{
+    if (!views.paths.record_triangle || !uses(&views.scene, EFFECT_PROCEDURAL_ALPHA)) return;
+    const bool is_asked = triangle >= 0 && alpha_is_asked(&views.scene, triangle);
+    views.paths.record_triangle[i] = is_asked ? triangle : -1;
+    views.paths.record_instance[i] = instance;
+    views.paths.record_distance[i] = distance;
+}
+
 // Rays that have scattered share so little of their way that eight of them together are slower than
 // one by one (a tenth on an interior); sixteen, on AVX-512, are not.
 constexpr bool packets_of_scattered_rays = width == 16;
 
 // One query a living path, in `context`, for rays that have nothing in common. Returns their
 // number.
-int intersect_singly(RTCScene scene, PacketContext& context, const Paths& paths, int count)
+int intersect_singly(RTCScene scene, PacketContext& context, const Views& views, int count)
 {
+    const Paths& paths = views.paths;
     const int n = paths.capacity;
     int rays = 0;
     for (int i = 0; i < count; ++i) {
+        if (!is_waiting(paths, i)) continue;
+        RTCRayHit query;
+        query.ray.tnear = begin_lane(context, paths, 0, i, true);
         paths.hit_instance[i] = 0;
         paths.hit_triangle[i] = -1;
+        leave_record(views, i, 0, -1, 0);
         if (paths.depth[i] < 0) continue;
         ++rays;
-        context.path[0] = i;
-        context.best_distance[0] = far_away;
-        context.best_place[0] = ~std::uint64_t(0);
-        RTCRayHit query;
         query.ray.org_x = paths.ray_origin[i];
         query.ray.org_y = paths.ray_origin[n + i];
         query.ray.org_z = paths.ray_origin[2 * n + i];
         query.ray.dir_x = paths.ray_direction[i];
         query.ray.dir_y = paths.ray_direction[n + i];
         query.ray.dir_z = paths.ray_direction[2 * n + i];
-        query.ray.tnear = 0.0f;
         query.ray.tfar = far_away;
         query.ray.time = 0.0f;
         query.ray.mask = ~0u;
@@ -157,6 +253,7 @@ int intersect_singly(RTCScene scene, PacketContext& context, const Paths& paths,
         const int instance = instance_of(query.hit.instID[0]);
         paths.hit_instance[i] = instance;
         paths.hit_triangle[i] = context.first_triangle[instance] + int(query.hit.primID);
+        leave_record(views, i, instance, paths.hit_triangle[i], query.ray.tfar);
     }
     return rays;
 }
@@ -177,16 +274,22 @@ struct EmbreeScene::Implementation {
         if (device) rtcReleaseDevice(device);
     }
 
-    RTCGeometry triangles_of(const EmbreeMesh& mesh, bool has_alpha) const
+    RTCGeometry triangles_of(const EmbreeMesh& mesh, unsigned effects) const
     {
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                    mesh.positions, 0, 16, mesh.vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    mesh.triangles, 0, 16, size_t(mesh.triangle_count));
-        rtcSetGeometryIntersectFilterFunction(geometry,
-                                              has_alpha ? filter_alpha_then_ties : filter_ties);
-        if (has_alpha) rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
+        if ((effects & EFFECT_PROCEDURAL_ALPHA) != 0) {
+            rtcSetGeometryIntersectFilterFunction(geometry, filter_passed_then_alpha);
+            rtcSetGeometryOccludedFilterFunction(geometry, filter_asked_then_alpha);
+        } else if ((effects & EFFECT_ALPHA) != 0) {
+            rtcSetGeometryIntersectFilterFunction(geometry, filter_alpha_then_ties);
+            rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
+        } else {
+            rtcSetGeometryIntersectFilterFunction(geometry, filter_ties);
+        }
         rtcCommitGeometry(geometry);
         return geometry;
     }
@@ -207,10 +310,10 @@ struct EmbreeScene::Implementation {
 
     // Instances of one mesh share its scene: `same_as` is that of an earlier instance of it, or
     // nullptr.
-    RTCScene mesh_scene(const EmbreeMesh& mesh, bool has_alpha)
+    RTCScene mesh_scene(const EmbreeMesh& mesh, unsigned effects)
     {
         RTCScene scene = new_scene();
-        attach(scene, triangles_of(mesh, has_alpha), 0);
+        attach(scene, triangles_of(mesh, effects), 0);
         rtcCommitScene(scene);
         meshes.push_back(scene);
         return scene;
@@ -227,7 +330,7 @@ bool count_bytes(void* pointer, ssize_t bytes, bool)
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const EmbreeMesh* meshes, int count, int threads, bool has_alpha)
+EmbreeScene::EmbreeScene(const EmbreeMesh* meshes, int count, int threads, unsigned effects)
     : implementation_(std::make_unique<Implementation>())
 {
     Implementation& self = *implementation_;
@@ -243,11 +346,11 @@ EmbreeScene::EmbreeScene(const EmbreeMesh* meshes, int count, int threads, bool 
         self.first_triangle.push_back(mesh.first_triangle);
         if (mesh.triangle_count == 0) continue;
         if (!mesh.to_world) {
-            self.attach(self.top, self.triangles_of(mesh, has_alpha), unsigned(k));
+            self.attach(self.top, self.triangles_of(mesh, effects), unsigned(k));
             continue;
         }
         if (placed.empty() || placed.back().first != mesh.first_triangle)
-            placed.emplace_back(mesh.first_triangle, self.mesh_scene(mesh, has_alpha));
+            placed.emplace_back(mesh.first_triangle, self.mesh_scene(mesh, effects));
         RTCGeometry instance = rtcNewGeometry(self.device, RTC_GEOMETRY_TYPE_INSTANCE);
         rtcSetGeometryInstancedScene(instance, placed.back().second);
         rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, mesh.to_world);
@@ -282,7 +385,7 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
     context.first_triangle = implementation_->first_triangle.data();
     context.purpose = 0;
     if (!is_coherent && !packets_of_scattered_rays)
-        return intersect_singly(implementation_->top, context, paths, count);
+        return intersect_singly(implementation_->top, context, views, count);
     const int n = paths.capacity;
     int rays = 0;
     for (int first = 0; first < count; first += width) {
@@ -290,19 +393,16 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
         alignas(64) RayHits packet;
         for (int k = 0; k < width; ++k) {
             const int i = first + k;
-            const bool is_alive = i < count && paths.depth[i] >= 0;
+            const bool is_alive = i < count && paths.depth[i] >= 0 && is_waiting(paths, i);
             valid[k] = is_alive ? -1 : 0;
             rays += is_alive ? 1 : 0;
-            context.path[k] = i;
-            context.best_distance[k] = far_away;
-            context.best_place[k] = ~std::uint64_t(0);
             packet.ray.org_x[k] = paths.ray_origin[i];
             packet.ray.org_y[k] = paths.ray_origin[n + i];
             packet.ray.org_z[k] = paths.ray_origin[2 * n + i];
             packet.ray.dir_x[k] = paths.ray_direction[i];
             packet.ray.dir_y[k] = paths.ray_direction[n + i];
             packet.ray.dir_z[k] = paths.ray_direction[2 * n + i];
-            packet.ray.tnear[k] = 0.0f;
+            packet.ray.tnear[k] = begin_lane(context, paths, k, i, is_alive);
             packet.ray.tfar[k] = far_away;
             packet.ray.time[k] = 0.0f;
             packet.ray.mask[k] = ~0u;
@@ -318,14 +418,57 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
 #endif
         for (int k = 0; k < width; ++k) {
             const int i = first + k;
+            if (valid[k] == 0 && paths.lookup != LOOKUP_SURFACE) continue;
             const bool is_hit = valid[k] != 0 && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
             const int instance = is_hit ? instance_of(packet.hit.instID[0][k]) : 0;
             paths.hit_instance[i] = instance;
             paths.hit_triangle[i] =
                 is_hit ? context.first_triangle[instance] + int(packet.hit.primID[k]) : -1;
+            leave_record(views, i, instance, paths.hit_triangle[i], packet.ray.tfar[k]);
         }
     }
     return rays;
+}
+
+// The nearest surface on the way of each shadow ray in the list about which a texture has to be
+// asked; nothing else is left that could stop it.
+void EmbreeScene::find_asked(const SceneView& scene_view, const PathView& path_view,
+                             const int* list, int count) const
+{
+    const Views views = typed(scene_view, path_view);
+    const Paths& paths = views.paths;
+    PacketContext context;
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.views = &views;
+    context.first_triangle = implementation_->first_triangle.data();
+    context.purpose = 1;
+    context.seeks_asked = true;
+    const int n = paths.capacity;
+    for (int k = 0; k < count; ++k) {
+        const int i = list[k];
+        RTCRayHit query;
+        query.ray.tnear = begin_lane(context, paths, 0, i, true);
+        query.ray.org_x = paths.shadow_origin[i];
+        query.ray.org_y = paths.shadow_origin[n + i];
+        query.ray.org_z = paths.shadow_origin[2 * n + i];
+        query.ray.dir_x = paths.shadow_direction[i];
+        query.ray.dir_y = paths.shadow_direction[n + i];
+        query.ray.dir_z = paths.shadow_direction[2 * n + i];
+        query.ray.tfar = paths.shadow_distance[i];
+        query.ray.time = 0.0f;
+        query.ray.mask = ~0u;
+        query.ray.id = 0;
+        query.ray.flags = 0;
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(implementation_->top, &context.embree, &query);
+        const bool is_hit = query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        const int instance = is_hit ? instance_of(query.hit.instID[0]) : 0;
+        const int triangle = is_hit ? context.first_triangle[instance] + int(query.hit.primID) : -1;
+        paths.is_occluded[i] = is_hit ? 1 : 0;
+        leave_record(views, i, instance, triangle, query.ray.tfar);
+    }
 }
 
 int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_view, int count) const
@@ -338,6 +481,16 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
     context.views = &views;
     context.first_triangle = implementation_->first_triangle.data();
     context.purpose = 1;
+    const bool leaves_records =
+        paths.record_triangle && uses(&views.scene, EFFECT_PROCEDURAL_ALPHA);
+    std::vector<int> asked;
+    if (leaves_records && paths.lookup != LOOKUP_SURFACE) {
+        for (int i = 0; i < count; ++i)
+            if (is_waiting(paths, i)) asked.push_back(i);
+        find_asked(scene_view, path_view, asked.data(), int(asked.size()));
+        return int(asked.size());
+    }
+    if (leaves_records) std::fill_n(paths.record_triangle, count, -1);
     const int n = paths.capacity;
     int rays = 0;
     int i = 0;
@@ -352,6 +505,7 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
             if (!is_lit) continue;
             valid[lanes] = -1;
             context.path[lanes] = i;
+            context.has_asked[lanes] = false;
             packet.org_x[lanes] = paths.shadow_origin[i];
             packet.org_y[lanes] = paths.shadow_origin[n + i];
             packet.org_z[lanes] = paths.shadow_origin[2 * n + i];
@@ -372,10 +526,15 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
 #else
         rtcOccluded8(valid, implementation_->top, &context.embree, &packet);
 #endif
-        for (int k = 0; k < lanes; ++k)
-            paths.is_occluded[context.path[k]] = packet.tfar[k] < 0.0f ? 1 : 0;
+        for (int k = 0; k < lanes; ++k) {
+            const bool is_occluded = packet.tfar[k] < 0.0f;
+            paths.is_occluded[context.path[k]] = is_occluded ? 1 : 0;
+            if (leaves_records && !is_occluded && context.has_asked[k])
+                asked.push_back(context.path[k]);
+        }
         rays += lanes;
     }
+    if (leaves_records) find_asked(scene_view, path_view, asked.data(), int(asked.size()));
     return rays;
 }
 

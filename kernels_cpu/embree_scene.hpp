@@ -22,21 +22,26 @@ struct EmbreeMesh {
 
 class EmbreeScene {
 public:
-    EmbreeScene(const EmbreeMesh* meshes, int count, int threads, bool has_alpha);
+    // effects: of the scene, those of alpha matter.
+    EmbreeScene(const EmbreeMesh* meshes, int count, int threads, unsigned effects);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     // Closest hits of paths 0 .. count - 1 into hit_triangle and hit_instance; -1 for dead paths
-    // and misses. Returns the number of rays.
+    // and misses. Returns the number of rays. Views whose lookup is not LOOKUP_SURFACE: those that
+    // have a record go on behind it.
     int intersect(const SceneView&, const PathView&, int count, bool is_coherent) const;
-    // Shadow rays of the paths whose light contribution is not black. Returns their number.
+    // Shadow rays of the paths whose light contribution is not black. Returns their number. A view
+    // without records takes surfaces whose alpha a texture gives for solid.
     int occlusion(const SceneView&, const PathView&, int count) const;
 
     size_t bytes() const;  // what Embree allocated
     static std::string version();
 
 private:
+    void find_asked(const SceneView&, const PathView&, const int* list, int count) const;
+
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };

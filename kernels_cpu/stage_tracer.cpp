@@ -37,7 +37,7 @@ StageTracer::StageTracer(const KernelSet& kernels, const EmbreeScene* embree,
     view_.texture_planes = texture_planes_.data();
     view_.capacity = int(padded);
     view_.planes = planes_.data();
-    shadow_records_ = RecordView(view_, shadow_records);
+    records_ = RecordViews(view_);
 }
 
 void StageTracer::run(const std::function<void(Stage, int, Planes)>& after_stage)
@@ -54,11 +54,8 @@ void StageTracer::run(const std::function<void(Stage, int, Planes)>& after_stage
 
 void StageTracer::run_stage(Stage stage, int bounce)
 {
-    if (stage == STAGE_scale_light)
-        look_up_textures(scene_.effects, LOOKUP_EMISSION, [&](Stage textures, int lookup) {
-            run_stage(textures, shadow_records_.of(view_, lookup), bounce);
-        });
-    run_stage(stage, view_, bounce);
+    records_.run(stage, scene_.effects, view_, paths_,
+                 [&](Stage launched, const PathView& view) { run_stage(launched, view, bounce); });
 }
 
 void StageTracer::run_stage(Stage stage, const PathView& view, int bounce)

@@ -35,7 +35,7 @@ private:
     const EmbreeScene* embree_;
     SceneView scene_;
     PathView view_;
-    RecordView shadow_records_;
+    RecordViews records_;
     int paths_;
     std::vector<std::vector<unsigned char>> memory_;
     std::vector<void*> planes_;

@@ -39,7 +39,7 @@ constexpr unsigned variants[] = {
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_PROCEDURAL,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
         EFFECT_PROCEDURAL,
-    ~unsigned(EFFECT_PROCEDURAL_EMISSION),
+    ~unsigned(EFFECT_PROCEDURAL_EMISSION | EFFECT_PROCEDURAL_ALPHA),
     ~0u,
 };
 [[maybe_unused]] constexpr int variant_count = int(sizeof(variants) / sizeof(variants[0]));

@@ -4,6 +4,7 @@
 
 #include "common/stages/accumulate.h"
 #include "common/stages/add_emission.h"
+#include "common/stages/decide_alpha.h"
 #include "common/stages/evaluate_surface.h"
 #include "common/stages/generate_paths.h"
 #include "common/stages/record_features.h"

@@ -11,11 +11,14 @@
 //   when: once - at the start; each_bounce - until no path is alive; first_bounce - in the first of
 //         these only, at its place in the order; at_end -
 //         over result entries, not paths, once for each of Paths::samples with Paths::turn counting up
+//         each_layer - of surfaces whose alpha a texture gives: between the rounds of intersect
+//         and of occlusion
 //   needs: effects of which the scene must call for one, else the stage is neither compiled nor
 //         launched; 0: always
 #define STAGES(X)                                                        \
     X(generate_paths, shared, once, 0)                                   \
     X(intersect, native, each_bounce, 0)                                 \
+    X(decide_alpha, shared, each_layer, EFFECT_PROCEDURAL_ALPHA)         \
     X(trace_texture_rays, native, each_bounce, EFFECT_TEXTURE_OCCLUSION) \
     X(evaluate_textures, native, each_bounce, EFFECT_PROCEDURAL)         \
     X(evaluate_surface, shared, each_bounce, 0)                          \

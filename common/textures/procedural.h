@@ -82,7 +82,8 @@ typedef struct {
 // The program that is run where path i asks; 0: none.
 SHARED int texture_program_of(const Scene* scene, const Paths* paths, int i)
 {
-    const int which = paths->lookup == LOOKUP_SURFACE ? PROGRAM_SURFACE : PROGRAM_EMISSION;
+    const int away = paths->lookup == LOOKUP_EMISSION ? PROGRAM_EMISSION : PROGRAM_ALPHA;
+    const int which = paths->lookup == LOOKUP_SURFACE ? PROGRAM_SURFACE : away;
     const int hit = get_hit_triangle(paths, i);
     const int triangle = hit < 0 ? 0 : hit;
     const int program =

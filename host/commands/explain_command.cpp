@@ -133,6 +133,7 @@ void add_stages(std::string& text, const SceneData& scene)
     const std::map<std::string, const char*> when_words = {{"once", "once"},
                                                            {"each_bounce", "each bounce"},
                                                            {"first_bounce", "first bounce"},
+                                                           {"each_layer", "each layer"},
                                                            {"at_end", "at the end"}};
 #define EXPLAIN_STAGE(name, body, when, needs) add(#name, when_words.at(#when), needs);
     STAGES(EXPLAIN_STAGE)
@@ -253,6 +254,9 @@ std::string reason_for(const SceneData& scene, unsigned effect)
     case EFFECT_PROCEDURAL_EMISSION:
         return materials_with(
             scene, [](const Material& m) { return m.texture_program[PROGRAM_EMISSION] != 0; });
+    case EFFECT_PROCEDURAL_ALPHA:
+        return materials_with(
+            scene, [](const Material& m) { return m.texture_program[PROGRAM_ALPHA] != 0; });
     case EFFECT_ALPHA:
         return materials_with(scene,
                               [](const Material& m) { return m.alpha_mode != ALPHA_OPAQUE; });

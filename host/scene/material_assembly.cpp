@@ -197,12 +197,7 @@ bool SceneAssembly::can_be_transparent(const MaterialInput& m) const
     if (m.alpha_mode == ALPHA_OPAQUE) {
         return false;
     }
-    if (m.base_texture.node >= 0) {
-        throw SceneError(fmt::format(
-            "material {}: its alpha would come from texture node {}, which cannot be asked on a "
-            "ray's way yet; make the material opaque, or let an image give the alpha",
-            m.name, builder_.texture_nodes_[size_t(m.base_texture.node)].name));
-    }
+    if (m.base_texture.node >= 0) return true;
     const size_t index = size_t(&m - builder_.materials_.data());
     if (material_colored_[index]) {
         return true;

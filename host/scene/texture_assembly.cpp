@@ -295,16 +295,19 @@ void SceneAssembly::assemble_textures()
         }
         if (roots.empty()) continue;
         pages.add_material(m, PROGRAM_SURFACE, roots, outputs);
-        if (packed[SLOT_EMISSION] != TEXTURE_PROCEDURAL) continue;
-        if (roots.size() > 1) {
-            const int emission = slots[SLOT_EMISSION]->node;
-            pages.add_material(m, PROGRAM_EMISSION, {emission},
-                               {{emission, 1 << settings.texture_output[SLOT_EMISSION]}});
-        } else {
-            pages.share_program(m, PROGRAM_EMISSION);
-        }
-        textures.records = 1;
-        data_.effects |= EFFECT_PROCEDURAL_EMISSION;
+        const auto look_up_alone = [&](int which, size_t slot, unsigned effect) {
+            const int root = slots[slot]->node;
+            if (roots.size() > 1)
+                pages.add_material(m, which, {root}, {{root, 1 << settings.texture_output[slot]}});
+            else
+                pages.share_program(m, which);
+            textures.records = 1;
+            data_.effects |= effect;
+        };
+        if (packed[SLOT_EMISSION] == TEXTURE_PROCEDURAL)
+            look_up_alone(PROGRAM_EMISSION, SLOT_EMISSION, EFFECT_PROCEDURAL_EMISSION);
+        if (packed[SLOT_BASE] == TEXTURE_PROCEDURAL && material.alpha_mode != ALPHA_OPAQUE)
+            look_up_alone(PROGRAM_ALPHA, SLOT_BASE, EFFECT_PROCEDURAL_ALPHA);
     }
     pages.finish();
     data_.effects |= EFFECT_PROCEDURAL;
