@@ -91,7 +91,7 @@ private:
     std::vector<opencl::Buffer> scene_;
     DispatchMemory memory_;
     std::vector<PlaneRow> texture_result_rows_;
-    std::array<int, 2> texture_planes_{};  // of each row
+    std::array<int, 5> texture_planes_{};  // of each row
     ProgramSet programs_;
     std::array<StageKernel, STAGE_COUNT> kernels_;
     opencl::Kernel compact_count_;

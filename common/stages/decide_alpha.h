@@ -22,5 +22,5 @@ SHARED void decide_alpha(const Scene* scene, const Paths* paths, int i)
     const uint seed = alpha_seed(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i),
                                  get_depth(paths, i), purpose);
     const int stops = alpha_stops(scene, instance, triangle, alpha, seed);
-    set_hit_triangle(paths, i, is_asked & !stops ? record : -1);
+    set_hit_triangle(paths, i, (is_asked & !stops) ? record : -1);
 }

@@ -1,5 +1,6 @@
 #include "host/commands/render_command.hpp"
 
+#include "common/as_cpp/texture_lookups.hpp"
 #include "host/commands/picture_flags.hpp"
 #include "host/commands/render_report.hpp"
 #include "host/commands/texture_capture.hpp"
@@ -101,6 +102,12 @@ void print_summary(const RenderCommand& command, const RenderResult& result)
                rays / result.seconds * 1e-6);
     fmt::print(stderr, "dispatches {:.1f} % full, scheduling and merging {:.1f} % of the time\n",
                100 * result.dispatch_fill, 100 * result.scheduling_seconds / result.seconds);
+    if (statistics.undecided_rays > 0)
+        fmt::print(
+            stderr,
+            "notice: {} rays met more than {} surfaces whose alpha a texture gives; the next "
+            "was taken for solid\n",
+            statistics.undecided_rays, most_alpha_layers);
     for (const std::string& path : command.outputs) fmt::print(stderr, "wrote {}\n", path);
 }
 
