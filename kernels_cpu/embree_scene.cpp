@@ -68,6 +68,7 @@ struct PacketContext {
     // these surfaces alone, and whether the way of a shadow ray holds any.
     float passed_distance[width];
     std::uint64_t passed_place[width];
+    bool leaves_records = false;
     bool seeks_asked = false;
     bool has_asked[width];
 };
@@ -146,7 +147,7 @@ void filter_passed(const RTCFilterFunctionNArguments* arguments)
 {
     const auto* context = reinterpret_cast<const PacketContext*>(arguments->context);
     const unsigned n = arguments->N;
-    for (unsigned k = 0; k < n; ++k) {
+    for (unsigned k = 0; context->leaves_records && k < n; ++k) {
         if (arguments->valid[k] != -1) continue;
         const unsigned lane = RTCRayN_id(arguments->ray, n, k);
         const float distance = RTCRayN_tfar(arguments->ray, n, k);
@@ -172,8 +173,7 @@ void filter_passed_then_alpha(const RTCFilterFunctionNArguments* arguments)
 void filter_asked_then_alpha(const RTCFilterFunctionNArguments* arguments)
 {
     auto* context = reinterpret_cast<PacketContext*>(arguments->context);
-    const bool has_records = context->views->paths.record_triangle != nullptr;
-    for (unsigned k = 0; has_records && k < arguments->N; ++k) {
+    for (unsigned k = 0; context->leaves_records && k < arguments->N; ++k) {
         if (arguments->valid[k] != -1 || !is_asked(*context, arguments, k)) continue;
         context->has_asked[RTCRayN_id(arguments->ray, arguments->N, k)] = true;
         arguments->valid[k] = 0;
@@ -188,6 +188,7 @@ float begin_lane(PacketContext& context, const Paths& paths, int lane, int i, bo
     context.path[lane] = i;
     context.best_distance[lane] = far_away;
     context.best_place[lane] = ~std::uint64_t(0);
+    if (!context.leaves_records) return 0;
     context.passed_distance[lane] = 0;
     context.passed_place[lane] = 0;
     if (paths.lookup == LOOKUP_SURFACE || !is_alive) return 0;
@@ -205,10 +206,15 @@ bool is_waiting(const Paths& paths, int i)
     return paths.lookup == LOOKUP_SURFACE || paths.record_triangle[i] >= 0;
 }
 
+// Whether there are records, and surfaces to leave them of.
+bool has_records(const Views& views)
+{
+    return views.paths.record_triangle && uses(&views.scene, EFFECT_PROCEDURAL_ALPHA);
+}
+
 // Leaves a record of what a ray met, if a texture has to be asked about it; triangle -1: nothing.
 void leave_record(const Views& views, int i, int instance, int triangle, float distance)
 {
-    if (!views.paths.record_triangle || !uses(&views.scene, EFFECT_PROCEDURAL_ALPHA)) return;
     const bool is_asked = triangle >= 0 && alpha_is_asked(&views.scene, triangle);
     views.paths.record_triangle[i] = is_asked ? triangle : -1;
     views.paths.record_instance[i] = instance;
@@ -232,7 +238,7 @@ int intersect_singly(RTCScene scene, PacketContext& context, const Views& views,
         query.ray.tnear = begin_lane(context, paths, 0, i, true);
         paths.hit_instance[i] = 0;
         paths.hit_triangle[i] = -1;
-        leave_record(views, i, 0, -1, 0);
+        if (context.leaves_records) leave_record(views, i, 0, -1, 0);
         if (paths.depth[i] < 0) continue;
         ++rays;
         query.ray.org_x = paths.ray_origin[i];
@@ -253,7 +259,8 @@ int intersect_singly(RTCScene scene, PacketContext& context, const Views& views,
         const int instance = instance_of(query.hit.instID[0]);
         paths.hit_instance[i] = instance;
         paths.hit_triangle[i] = context.first_triangle[instance] + int(query.hit.primID);
-        leave_record(views, i, instance, paths.hit_triangle[i], query.ray.tfar);
+        if (context.leaves_records)
+            leave_record(views, i, instance, paths.hit_triangle[i], query.ray.tfar);
     }
     return rays;
 }
@@ -384,6 +391,7 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
     context.views = &views;
     context.first_triangle = implementation_->first_triangle.data();
     context.purpose = 0;
+    context.leaves_records = has_records(views);
     if (!is_coherent && !packets_of_scattered_rays)
         return intersect_singly(implementation_->top, context, views, count);
     const int n = paths.capacity;
@@ -424,7 +432,8 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
             paths.hit_instance[i] = instance;
             paths.hit_triangle[i] =
                 is_hit ? context.first_triangle[instance] + int(packet.hit.primID[k]) : -1;
-            leave_record(views, i, instance, paths.hit_triangle[i], packet.ray.tfar[k]);
+            if (context.leaves_records)
+                leave_record(views, i, instance, paths.hit_triangle[i], packet.ray.tfar[k]);
         }
     }
     return rays;
@@ -443,7 +452,7 @@ void EmbreeScene::find_asked(const SceneView& scene_view, const PathView& path_v
     context.views = &views;
     context.first_triangle = implementation_->first_triangle.data();
     context.purpose = 1;
-    context.seeks_asked = true;
+    context.leaves_records = context.seeks_asked = true;
     const int n = paths.capacity;
     for (int k = 0; k < count; ++k) {
         const int i = list[k];
@@ -481,16 +490,15 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
     context.views = &views;
     context.first_triangle = implementation_->first_triangle.data();
     context.purpose = 1;
-    const bool leaves_records =
-        paths.record_triangle && uses(&views.scene, EFFECT_PROCEDURAL_ALPHA);
+    context.leaves_records = has_records(views);
     std::vector<int> asked;
-    if (leaves_records && paths.lookup != LOOKUP_SURFACE) {
+    if (context.leaves_records && paths.lookup != LOOKUP_SURFACE) {
         for (int i = 0; i < count; ++i)
             if (is_waiting(paths, i)) asked.push_back(i);
         find_asked(scene_view, path_view, asked.data(), int(asked.size()));
         return int(asked.size());
     }
-    if (leaves_records) std::fill_n(paths.record_triangle, count, -1);
+    if (context.leaves_records) std::fill_n(paths.record_triangle, count, -1);
     const int n = paths.capacity;
     int rays = 0;
     int i = 0;
@@ -529,12 +537,12 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
         for (int k = 0; k < lanes; ++k) {
             const bool is_occluded = packet.tfar[k] < 0.0f;
             paths.is_occluded[context.path[k]] = is_occluded ? 1 : 0;
-            if (leaves_records && !is_occluded && context.has_asked[k])
+            if (context.leaves_records && !is_occluded && context.has_asked[k])
                 asked.push_back(context.path[k]);
         }
         rays += lanes;
     }
-    if (leaves_records) find_asked(scene_view, path_view, asked.data(), int(asked.size()));
+    if (context.leaves_records) find_asked(scene_view, path_view, asked.data(), int(asked.size()));
     return rays;
 }
 
