@@ -70,7 +70,8 @@ SHARED TextureDifferentials texture_differentials(const Scene* scene, const Path
         shift_on_plane(origin, along, down, is_parallel, place.position, place.face_normal);
     const int is_of_camera = (get_depth(paths, i) == 0) &
                              ((paths->lookup == LOOKUP_SURFACE) | (paths->lookup == LOOKUP_ALPHA));
-    const float known = (is_of_camera & (depth > 0.0f)) ? 1.0f : 0.0f;
+    const int is_known = is_of_camera & (depth > 0.0f);
+    const float known = is_known ? 1.0f : 0.0f;
     TextureDifferentials change;
     change.dx = uv_change(world, along1, along2, dx * known);
     change.dy = uv_change(world, along1, along2, dy * known);

@@ -127,7 +127,9 @@ TEST_P(Textures, TX_7_ASharedNodeIsEvaluatedOnceAHit)
         furnace(scene, {.base_texture = node(right), .metallic_roughness_texture = node(counted)});
     data.settings[0].max_bounces = 0;
     backend_->upload(data);
-    const RenderResult result = render(*backend_, data, {.samples = 20});
+    RenderOptions options;
+    options.samples = 20;
+    const RenderResult result = render(*backend_, data, options);
     const auto& faults = result.film.texture_faults().of_kind;
     EXPECT_EQ(faults[TEXTURE_FAULT_INDEX].count, 20u * 16 * 16);
     EXPECT_EQ(faults[TEXTURE_FAULT_NOT_FINITE].count, 0u);
