@@ -141,6 +141,7 @@ enum class SiteKind {
     Drop,          // token
     EmptyReturn,   // token: return; number: function
     FloatLiteral,  // token
+    Watch,         // range: a value of floats that is kept or returned; number: its line
 };
 
 struct Site {

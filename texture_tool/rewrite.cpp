@@ -12,10 +12,27 @@ namespace {
 
 const char* const context = "tx_context";
 
+// Before the user's text, in its namespace: notes the line of a value that is not finite.
+const char* const watch_text =
+    "inline int tx_is_finite(float v) { return math_abs(v) <= FLOAT_MAX; }\n"
+    "inline int tx_is_finite(float2 v) { return tx_is_finite(v.x) & tx_is_finite(v.y); }\n"
+    "inline int tx_is_finite(float3 v)\n"
+    "{ return tx_is_finite(v.x) & tx_is_finite(v.y) & tx_is_finite(v.z); }\n"
+    "inline int tx_is_finite(float4 v)\n"
+    "{ return tx_is_finite(v.x) & tx_is_finite(v.y) & tx_is_finite(v.z) & tx_is_finite(v.w); }\n"
+    "template<typename T> T tx_watch(TextureContext* tx, int line, T v)\n"
+    "{\n"
+    "    if constexpr (requires { tx_is_finite(v); }) {\n"
+    "        if (!tx_is_finite(v) && tx->fault_line == 0) tx->fault_line = line;\n"
+    "    }\n"
+    "    return v;\n"
+    "}\n";
+
 class Rewriter {
 public:
     Rewriter(const Description& description, Variant variant, const std::string& id)
-        : description_(description), is_cpp_(variant == Variant::Cpp), id_(id), text_(description),
+        : description_(description), is_cpp_(variant != Variant::OpenCl),
+          is_watched_(variant == Variant::WatchedCpp), id_(id), text_(description),
           hoisted_(description.functions.size())
     {
     }
@@ -32,6 +49,7 @@ public:
                 text_.remove(function.range);
         Rewritten result;
         if (is_cpp_) result.text = "namespace " + id_ + " {\n";
+        if (is_watched_) result.text += watch_text;
         result.text +=
             with_line_marks(text_.file()) + "\n#line 1 \"<generated for " + id_ + ">\"\n" + entry();
         if (is_cpp_) result.text += "}  // namespace " + id_ + "\n";
@@ -115,6 +133,11 @@ private:
             return text_.replace(site.token, "return " + zero(description_.functions[site.number]));
         case SiteKind::FloatLiteral:
             return float_literal(site);
+        case SiteKind::Watch:
+            if (!is_watched_) return;
+            text_.before(site.range.first, "tx_watch(" + std::string(context) + ", " +
+                                               std::to_string(site.number) + ", (");
+            return text_.after(site.range.last, "))");
         case SiteKind::EngineArgument:
         case SiteKind::Drop:
             return;
@@ -417,6 +440,7 @@ private:
 
     const Description& description_;
     bool is_cpp_;
+    bool is_watched_;
     std::string id_;
     TokenText text_;
     std::vector<std::string> hoisted_;

@@ -8,7 +8,8 @@
 
 namespace texture_tool {
 
-enum class Variant { OpenCl, Cpp };
+// WatchedCpp: C++ that also notes in fault_line where a value first was not finite.
+enum class Variant { OpenCl, Cpp, WatchedCpp };
 
 struct Rewritten {
     std::string text;

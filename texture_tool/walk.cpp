@@ -415,6 +415,20 @@ void Walk::local_variable(const VarDecl* variable, const DeclStmt* statement)
         return;
     }
     initialiser(variable->getInit(), false);
+    watch(variable->getInit());
+}
+
+// A value that is kept or returned, where it is one of the user's and of floats.
+void Walk::watch(const Expr* value)
+{
+    const Range range = range_of(value);
+    if (range.first > range.last || isa<InitListExpr>(value->IgnoreImplicit())) return;
+    const int line = description_.tokens[range.first].line;
+    if (spelled_type(value->getType()).rfind("float", 0) != 0 || description_.is_library(line))
+        return;
+    Site& site = add(SiteKind::Watch);
+    site.range = range;
+    site.number = description_.place(line).line;
 }
 
 }  // namespace texture_tool

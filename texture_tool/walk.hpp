@@ -34,6 +34,7 @@ private:
     void type_allowed(clang::QualType type, clang::SourceLocation at, const std::string& what);
     void local_variable(const clang::VarDecl* variable, const clang::DeclStmt* statement);
     void initialiser(const clang::Expr* value, bool is_constant);
+    void watch(const clang::Expr* value);
 
     // Statements and expressions; children before parents.
     void statement(const clang::Stmt* node);

@@ -355,7 +355,7 @@ void Walk::assignment(const BinaryOperator* node)
     expression(left);
     expression(node->getRHS());
     const auto* compound = dyn_cast<CompoundAssignOperator>(node);
-    if (!compound) return;
+    if (!compound) return watch(node->getRHS());
     bool only_opencl = false;
     std::string function = arithmetic_function(kind, compound->getComputationResultType(), nullptr,
                                                node->getRHS(), {}, only_opencl);

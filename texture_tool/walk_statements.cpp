@@ -57,6 +57,7 @@ void Walk::statement(const Stmt* node)
             site.token = token_at(node->getBeginLoc());
             site.number = function_;
         }
+        if (const Expr* value = cast<ReturnStmt>(node)->getRetValue()) watch(value);
         return;
     case Stmt::BreakStmtClass:
     case Stmt::ContinueStmtClass:

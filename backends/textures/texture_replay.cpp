@@ -2,6 +2,7 @@
 
 #include "backends/bvh_build.hpp"
 #include "backends/textures/native_stage.hpp"
+#include "backends/textures/texture_tool.hpp"
 #include "common/as_cpp/path_rows.hpp"
 #include "common/textures/procedural.h"
 #include "kernels_cpu/kernels.hpp"
@@ -49,6 +50,37 @@ std::vector<double> argument_of(const SceneData& scene, const TextureArgument& a
     return numbers;
 }
 
+// The functions' text with notes in it; as it was, where the file is not there any more.
+std::vector<TextureFunction> watched(std::vector<TextureFunction> functions)
+{
+    for (TextureFunction& function : functions) {
+        try {
+            function.cpp =
+                translate_texture({function.file, function.file, function.entry, function.id, true})
+                    .cpp;
+        } catch (const std::runtime_error&) {
+            continue;
+        }
+    }
+    return functions;
+}
+
+std::unique_ptr<NativeStage> stage_of(SceneData& scene, bool is_double, TextureReplay::Build build)
+{
+    NativeStageOptions options;
+    options.kind = is_double ? NativeStageKind::reference : NativeStageKind::scalar;
+    options.is_debug = build == TextureReplay::Build::debug;
+    if (build != TextureReplay::Build::watched)
+        return std::make_unique<NativeStage>(scene, options);
+    struct Exchanged {  // for as long as the stage is made
+        std::vector<TextureFunction>& functions;
+        std::vector<TextureFunction> own;
+        ~Exchanged() { functions.swap(own); }
+    } exchanged{scene.textures.functions, watched(scene.textures.functions)};
+    exchanged.functions.swap(exchanged.own);
+    return std::make_unique<NativeStage>(scene, options);
+}
+
 }  // namespace
 
 std::vector<TexturedPath> textured_hits(const SceneData& scene, const StageState& state)
@@ -80,7 +112,7 @@ std::vector<TexturedPath> textured_hits(const SceneData& scene, const StageState
 struct TextureReplay::Implementation {
     SceneData& scene;
     const KernelSet& kernels;
-    NativeStage stage;
+    std::unique_ptr<NativeStage> stage;
     std::vector<const void*> buffers;
     std::vector<std::vector<unsigned char>> memory;
     std::vector<void*> planes, texture_planes;
@@ -88,12 +120,11 @@ struct TextureReplay::Implementation {
     PathView path_view;
     WorkItem item{};
 
-    Implementation(SceneData& scene_in, bool is_double, bool is_debug)
+    Implementation(SceneData& scene_in, bool is_double, Build build)
         : scene(scene_in), kernels(is_double ? kernels_reference::set : kernels_scalar::set),
-          stage(scene_in,
-                {is_double ? NativeStageKind::reference : NativeStageKind::scalar, is_debug, {}})
+          stage(stage_of(scene_in, is_double, build))
     {
-        if (!stage.kernels().watch)
+        if (!stage->kernels().watch)
             throw std::runtime_error("procedural textures: the compiled stage is of another "
                                      "version; empty the cache folder");
         if ((scene.effects & EFFECT_TEXTURE_OCCLUSION) && scene.bvh_nodes.empty()) build_bvh(scene);
@@ -101,7 +132,7 @@ struct TextureReplay::Implementation {
     buffers.push_back(scene.name.empty() ? static_cast<const void*>(zeros) : scene.name.data());
         SCENE_BUFFERS(BIND)
 #undef BIND
-        scene_view = {scene.effects, buffers.data(), &stage.kernels()};
+        scene_view = {scene.effects, buffers.data(), &stage->kernels()};
         const auto add = [&](std::vector<void*>& to, int components) {
             memory.emplace_back(size_t(components) * capacity * sizeof(double) + 64);
             to.push_back(memory.back().data());
@@ -127,8 +158,8 @@ struct TextureReplay::Implementation {
     }
 };
 
-TextureReplay::TextureReplay(SceneData& scene, bool is_double, bool is_debug)
-    : implementation_(std::make_unique<Implementation>(scene, is_double, is_debug))
+TextureReplay::TextureReplay(SceneData& scene, bool is_double, Build build)
+    : implementation_(std::make_unique<Implementation>(scene, is_double, build))
 {
 }
 
@@ -173,7 +204,7 @@ std::vector<TextureStepValue> TextureReplay::run(const TextureHit& hit)
         }
         watching.steps.push_back(std::move(step));
     };
-    own.stage.kernels().watch(own.scene_view, own.path_view, 0, see, &watcher);
+    own.stage->kernels().watch(own.scene_view, own.path_view, 0, see, &watcher);
     return std::move(watcher.steps);
 }
 

@@ -41,9 +41,14 @@ std::vector<TexturedPath> textured_hits(const SceneData& scene, const StageState
 
 class TextureReplay {
 public:
-    // is_double: in double precision. is_debug: compiled for a debugger. Completes the scene, which
-    // must outlive this, with its tree where textures ask for occlusion.
-    TextureReplay(SceneData& scene, bool is_double, bool is_debug = false);
+    enum class Build {
+        plain,
+        debug,    // for a debugger
+        watched,  // fault_line is where a value first was not finite, in files that can be read
+    };
+    // is_double: in double precision. Completes the scene, which must outlive this, with its tree
+    // where textures ask for occlusion.
+    TextureReplay(SceneData& scene, bool is_double, Build build = Build::plain);
     ~TextureReplay();
     TextureReplay(const TextureReplay&) = delete;
     TextureReplay& operator=(const TextureReplay&) = delete;

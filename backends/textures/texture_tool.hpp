@@ -10,9 +10,10 @@ namespace diptych {
 
 struct TextureSource {
     std::filesystem::path file;
-    std::string name;   // of the file, in messages and for debuggers
-    std::string entry;  // empty: the only function that no other calls
-    std::string id;     // in generated code
+    std::string name;         // of the file, in messages and for debuggers
+    std::string entry;        // empty: the only function that no other calls
+    std::string id;           // in generated code
+    bool is_watched = false;  // the C++ notes in fault_line where a value first is not finite
 };
 
 // Throws std::runtime_error with the tool's messages (file:line:column: error: reason; remedy), or

@@ -281,7 +281,7 @@ SceneData load_for_replay(const TextureCapture& capture, SceneFlags flags, const
 
 int print_replay(const TextureCapture& capture, SceneData& scene, const std::string& path)
 {
-    TextureReplay replay(scene, capture.backend == "double", true);
+    TextureReplay replay(scene, capture.backend == "double", TextureReplay::Build::debug);
     const int pixel = capture.hits[0].hit.pixel;
     fmt::print("{}: pixel {},{} on {} ({}), {} hits\n", path, pixel & 0xffff, unsigned(pixel) >> 16,
                capture.backend, capture.device, capture.hits.size());

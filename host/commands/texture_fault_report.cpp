@@ -43,7 +43,7 @@ TextureFaultPlace place_of(const SceneData& scene, const TextureHit& hit,
                             step.clamped};
     const json about = json::parse(function.description, nullptr, false);
     place.line = about.is_object() ? about.value("line", 0) : 0;
-    if (kind == TEXTURE_FAULT_BUDGET) place.line = step.fault_line;
+    if (kind != TEXTURE_FAULT_INDEX && step.fault_line != 0) place.line = step.fault_line;
     place.arguments = arguments_text(function, step);
     return place;
 }
@@ -97,17 +97,17 @@ TextureFaultReport find_texture_faults(Backend& backend, const std::string& name
 {
     TextureFaultReport report{faults, {}};
     if (!faults.any()) return report;
-    std::optional<TextureReplay> replay;
-    try {
-        replay.emplace(scene, name == "double");
-    } catch (const std::runtime_error& error) {  // no compiler: counts and pixels are known anyway
-        fmt::print(stderr, "notice: {}\n", error.what());
-        return report;
-    }
     for (int kind = 0; kind < TEXTURE_FAULT_COUNT; ++kind) {
         const TextureFault& fault = faults.of_kind[size_t(kind)];
-        if (fault.count > 0)
-            report.first[size_t(kind)] = find_first(backend, scene, *replay, fault, kind);
+        if (fault.count == 0) continue;
+        try {
+            TextureReplay replay(scene, name == "double",
+                                 kind == TEXTURE_FAULT_NOT_FINITE ? TextureReplay::Build::watched
+                                                                  : TextureReplay::Build::plain);
+            report.first[size_t(kind)] = find_first(backend, scene, replay, fault, kind);
+        } catch (const std::runtime_error& error) {  // no compiler: counts and pixels are known
+            fmt::print(stderr, "notice: {}\n", error.what());
+        }
     }
     return report;
 }

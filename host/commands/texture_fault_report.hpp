@@ -15,7 +15,8 @@ namespace diptych {
 struct TextureFaultPlace {
     int x = 0, y = 0, sample = 0, bounce = 0;
     std::string node, function, file;
-    int line = 0;           // of the loop that ran out; else where the function begins
+    int line = 0;  // where a value first was not finite, or of the loop that ran out; else where
+                   // the function begins
     std::string arguments;  // "scale = 7, tint = (0.5, 0.75, 1)"
     std::string value;      // "(inf, nan, 0, 1)"
     int clamped = 0;        // indexes in this evaluation
