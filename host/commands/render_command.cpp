@@ -24,8 +24,6 @@ std::atomic<bool> is_interrupted{false};
 
 extern "C" void on_interrupt(int) { is_interrupted = true; }
 
-}
-
 void print_pixel(const Film& film, const Pixel& pixel)
 {
     const std::array<float, 3> value = film.radiance(pixel.x, pixel.y);
