@@ -45,9 +45,8 @@ LiveRender::LiveRender(LiveScene& scene, MakeBackend make_backend, LiveHooks hoo
     : scene_(scene), make_backend_(std::move(make_backend)), hooks_(std::move(hooks)),
       samples_(samples), backend_(make_backend_())
 {
-    const auto read_at = std::filesystem::file_time_type::clock::now();
     backend_->upload(scene_.data());
-    hooks_.watch_files(scene_.files(), read_at);
+    hooks_.watch_files(scene_.files(), scene_.read_at());
 }
 
 void LiveRender::run()
@@ -135,7 +134,6 @@ void LiveRender::apply(const Requests& requests)
         }
     }
     if (requests.changed.empty()) return;
-    const auto read_at = std::filesystem::file_time_type::clock::now();
     try {
         const Edit edit = scene_.look_again(requests.changed);
         follow(edit);
@@ -144,7 +142,7 @@ void LiveRender::apply(const Requests& requests)
     } catch (const std::runtime_error& error) {
         hold(error.what());
     }
-    hooks_.watch_files(scene_.files(), read_at);
+    hooks_.watch_files(scene_.files(), scene_.read_at());
 }
 
 // Brings the edit to the device; if that fails, neither the scene nor the device has changed.

@@ -167,6 +167,7 @@ Edit LiveScene::reload(const std::string& why)
 
 Edit LiveScene::look_again(const std::vector<fs::path>& changed)
 {
+    read_at_ = fs::file_time_type::clock::now();
     return attempt([&]() -> Edit {
         const auto other = std::ranges::find_if(
             changed, [&](const fs::path& file) { return file != file_ && !is_texture(file); });

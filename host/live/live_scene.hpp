@@ -41,6 +41,8 @@ public:
     SceneData& data() { return *data_; }
     // All that the scene was read from, and what it named when it last could not be read.
     std::vector<std::filesystem::path> files() const;
+    // Before they were last read: what was saved since may not be in data().
+    std::filesystem::file_time_type read_at() const { return read_at_; }
 
     // After an edit of some of files(), or of a value. Each throws std::runtime_error with messages
     // for the user, and then nothing has changed. What an edit leaves, is final with accept();
@@ -81,6 +83,7 @@ private:
                      std::string& reason);
     bool is_texture(const std::filesystem::path& file) const;
 
+    std::filesystem::file_time_type read_at_ = std::filesystem::file_time_type::clock::now();
     std::filesystem::path file_;
     std::vector<std::filesystem::path> more_;
     std::vector<std::string> values_;
