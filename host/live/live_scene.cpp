@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
+#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -160,9 +161,13 @@ Edit LiveScene::attempt(Change change)
 Edit LiveScene::reload(const std::string& why)
 {
     auto fresh = std::make_unique<SceneData>(load_(values_));
+    std::vector<std::string> news;
+    std::ranges::copy_if(fresh->notices, std::back_inserter(news), [&](const std::string& line) {
+        return std::ranges::find(data_->notices, line) == data_->notices.end();
+    });
     before_.data = std::move(data_);
     data_ = std::move(fresh);
-    return {EditKind::scene, why + ": the whole scene is loaded again", data_->notices};
+    return {EditKind::scene, why + ": the whole scene is loaded again", std::move(news)};
 }
 
 Edit LiveScene::look_again(const std::vector<fs::path>& changed)
