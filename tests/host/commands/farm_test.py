@@ -38,7 +38,7 @@ MpiDefault=none
 ReturnToService=2
 SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
-SchedulerParameters=sched_interval=1,bf_interval=1,requeue_delay=1
+SchedulerParameters=sched_interval=1,bf_interval=1
 SlurmdParameters=config_overrides
 NodeName=one NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[1]} CPUs=2
 NodeName=two NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[2]} CPUs=2
@@ -147,6 +147,16 @@ def farm(slurm, picture, *words, tasks=4, samples=SAMPLES):
             "--folder", picture + ".farm", *words]
 
 
+def start_requeued_now(slurm):
+    """Slurm starts a job that was queued again after two minutes. False when none waits for that."""
+    run = lambda *words: subprocess.run(words, env=slurm.environment, capture_output=True, text=True, check=False)
+    waiting = [line.split()[0] for line in run("squeue", "--me", "-h", "-r", "-o", "%A %r").stdout.splitlines()
+               if line.split()[1] == "BeginTime"]
+    for job in waiting:
+        run("scontrol", "update", f"JobId={job}", "StartTime=now")
+    return bool(waiting)
+
+
 def a_task_is_killed_on_the_way(slurm, folder):
     picture, alone = os.path.join(folder, "killed.exr"), os.path.join(folder, "alone.exr")
     samples = 4096
@@ -160,6 +170,7 @@ def a_task_is_killed_on_the_way(slurm, folder):
     programs = [pid for pid in victims if os.readlink(f"/proc/{pid}/exe") == os.path.realpath(PROGRAM)]
     assert programs, "task 1 ended before it could be killed"
     os.kill(int(programs[0]), 9)
+    assert wait_until(lambda: start_requeued_now(slurm), 60), "task 1 was not queued again"
     _, said = watcher.communicate(timeout=400)
     assert watcher.returncode == 0, said
     with open(os.path.join(picture + ".farm", "log-1"), encoding="utf-8") as log:
