@@ -71,9 +71,16 @@ Settings settings_from(const std::string& text)
 
 json json_of(const Slice& slice)
 {
-    return {{"first", slice.first},          {"end", slice.end},
-            {"round", slice.schedule.round}, {"level", slice.schedule.level},
-            {"pilot", slice.schedule.pilot}, {"blocks", slice.schedule.blocks.size()}};
+    const Schedule& schedule = slice.schedule;
+    return {{"first", slice.first},
+            {"end", slice.end},
+            {"error", slice.error},
+            {"timed", slice.is_timed},
+            {"unbiased", slice.is_unbiased},
+            {"round", schedule.round},
+            {"level", schedule.level},
+            {"pilot", schedule.pilot},
+            {"blocks", schedule.blocks.size()}};
 }
 
 Slice slice_from(const json& in)

@@ -139,7 +139,7 @@ def diptych(*words, environment=None, code=0):
 
 def expect_same(alone, together):
     """Every pixel of every layer; the files' metadata differ."""
-    diptych("compare", alone, together, "--metric", "maxdiff", "--max", "0")
+    diptych("compare", alone, together, "--metric", "max", "--max", "0")
 
 
 def farm(slurm, picture, *words, tasks=4, samples=SAMPLES):

@@ -121,7 +121,7 @@ TEST_F(CheckpointCommand, SlicesMergeToThePictureOfOneRender)
     ASSERT_EQ(outcome.exit_code, 0) << outcome.text();
     EXPECT_NE(outcome.err.find("together: samples 0..320, by cpu"), std::string::npos);
     const Outcome compared =
-        run_diptych({"compare", expected, merged, "--metric", "maxdiff", "--max", "0"});
+        run_diptych({"compare", expected, merged, "--metric", "max", "--max", "0"});
     EXPECT_EQ(compared.exit_code, 0) << compared.text();
 
     // and goes on as one
