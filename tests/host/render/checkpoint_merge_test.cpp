@@ -2,6 +2,7 @@
 #include "tests/host/render/rendered_slice.hpp"
 
 #include <algorithm>
+#include <random>
 
 namespace {
 
@@ -182,7 +183,10 @@ TEST(Merging, SubjectFollowsTheSceneAndNotTheBackend)
     EXPECT_NE(checkpoint_subject(scene, "").scene, before);
     scene.materials[0].roughness = laws::busy_scene(8, 8).materials[0].roughness;
     EXPECT_EQ(checkpoint_subject(scene, "").scene, before);
-    scene.textures.functions.push_back({.id = "f", .opencl = "one"});
+    TextureFunction function;
+    function.id = "f";
+    function.opencl = "one";
+    scene.textures.functions.push_back(function);
     const std::string textured = checkpoint_subject(scene, "").scene;
     EXPECT_NE(textured, before);
     scene.textures.functions[0].opencl = "two";

@@ -44,6 +44,8 @@ public:
         return plan;
     }
     void upload(SceneData&) override {}
+    void update_materials(const SceneData&) override {}
+    void update_textures(const SceneData&) override {}
     void trace(const Dispatch&, const std::function<void(const StageState&)>&) override {}
     Statistics statistics() const override { return {}; }
 
