@@ -147,7 +147,8 @@ void CpuBackend::upload(SceneData& scene)
 
 void CpuBackend::bind(const SceneData& scene)
 {
-    buffers_ = buffers_of(scene);
+    const std::vector<const void*> buffers = buffers_of(scene);
+    buffers_.assign(buffers.begin(), buffers.end());  // in place: chunks know where they lie
     scene_view_.effects = scene.effects;
     scene_view_.buffers = buffers_.data();
 }
