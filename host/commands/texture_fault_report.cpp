@@ -131,7 +131,7 @@ std::string texture_fault_text(const TextureFaultReport& report, int kind)
                                   fault.first_sample, fault.first_sample + fault.samples - 1);
     text += fmt::format(", the first in node {}, {}:{}: {}({}) gave {}", at->node, at->file,
                         at->line, at->function, at->arguments, at->value);
-    if (kind == TEXTURE_FAULT_INDEX) text += fmt::format(" with {} such indexes", at->clamped);
+    if (kind == TEXTURE_FAULT_INDEX) text += fmt::format(", {} in this evaluation,", at->clamped);
     return text +
            fmt::format(" at pixel {},{} sample {} bounce {}", at->x, at->y, at->sample, at->bounce);
 }

@@ -49,7 +49,8 @@ const Planted plants[] = {
      {{"k", 7}, {"table", {0.25, 0.5, 0.125}}},
      "index",
      1,
-     "planted(k = 7, table = (0.25, 0.5, 0.125)) gave (0.625, 0.625, 0.625, 1) with 1 such"},
+     "planted(k = 7, table = (0.25, 0.5, 0.125)) gave (0.625, 0.625, 0.625, 1), 1 in this "
+     "evaluation"},
     {"endless_loop",
      "float planted(float keep)\n{\n    float x = 0.5f;\n\n    while (x < 2.0f) x *= keep;\n"
      "    return x;\n}\n",
@@ -99,7 +100,7 @@ TEST_P(PlantedFaults, AreNamedAndCountedAlikeOnEveryBackend)
             EXPECT_EQ(fault.at("count").get<int>() > 0, kind == planted.kind) << kind;
         json& first = faults.at(planted.kind).at("first");
         EXPECT_EQ(first.at("line"), planted.line);
-        EXPECT_EQ(first.at("sample"), 0);
+        EXPECT_LT(first.at("sample"), 2);
         EXPECT_EQ(first.at("bounce"), 0);
         first.erase("value");  // a NaN's sign is nobody's promise
         if (expected.is_null()) expected = faults;
