@@ -36,7 +36,7 @@ SHARED float4 surface_slot(const Scene* scene, const Paths* paths, int i, float2
         const float g = get_texture_result(paths, plane + 1, i);
         const float b = get_texture_result(paths, plane + 2, i);
         const float a = get_texture_result(paths, plane + 3, i);
-        const int is_procedural = slot == TEXTURE_PROCEDURAL;
+        const int is_procedural = (slot == TEXTURE_PROCEDURAL) & (hit >= 0);
         texel = make_float4(is_procedural ? r : texel.x, is_procedural ? g : texel.y,
                             is_procedural ? b : texel.z, is_procedural ? a : texel.w);
     }
