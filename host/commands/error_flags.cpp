@@ -99,6 +99,8 @@ std::string ending_text(const RenderResult& result, const RenderOptions& options
     const char* why[] = {"the target is reached", "the samples are used up", "the time is over",
                          "interrupted"};
     std::string text = "ended: " + std::string(why[int(result.ending)]);
+    if (options.is_unbiased && result.ending == Ending::SamplesDone)
+        text = "ended: what the pilot asked for is rendered";
     if (result.target > 0 && result.ending != Ending::TargetReached)
         text += fmt::format("; {} of {} blocks are above {:.3g} JND", result.unfinished_blocks,
                             result.blocks, result.target);

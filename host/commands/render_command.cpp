@@ -2,6 +2,7 @@
 
 #include "common/as_cpp/texture_lookups.hpp"
 #include "host/commands/picture_flags.hpp"
+#include "host/commands/progress_pictures.hpp"
 #include "host/commands/render_report.hpp"
 #include "host/commands/texture_capture.hpp"
 
@@ -31,43 +32,13 @@ void print_pixel(const Film& film, const Pixel& pixel)
                value[2]);
 }
 
-// What is written: the film's layers, and where its error is known, how visible it is.
-image::Picture picture_of(const Film& film, const RenderOptions& options)
+// Blocks by which the error is summed up, the same for uniform and adaptive renders.
+BlockGrid error_grid(const Settings& settings)
 {
-    image::Picture picture = film.picture();
-    if (film.has_standard_error() && !options.pixel)
-        picture.layers.push_back(
-            image::predicted_error_layer(predicted_error(film, options.viewer)));
-    return picture;
+    RenderOptions adaptive;
+    adaptive.error = 1;
+    return grid_of(settings, adaptive);
 }
-
-// Rewrites the pictures of a render in progress every so many seconds.
-class Refresher {
-public:
-    Refresher(const RenderCommand& command, const RenderOptions& options,
-              const image::WriteOptions& write)
-        : command_(command), options_(options), write_(write),
-          interval_(parse_seconds("--refresh", command.refresh))
-    {
-    }
-
-    void look_at(const RenderState& state)
-    {
-        const auto now = std::chrono::steady_clock::now();
-        if (std::chrono::duration<double>(now - last_).count() < interval_) return;
-        const image::Picture picture = picture_of(state.film, options_);
-        for (const std::string& path : command_.outputs)
-            image::write_picture(path, picture, write_);
-        last_ = std::chrono::steady_clock::now();
-    }
-
-private:
-    const RenderCommand& command_;
-    const RenderOptions& options_;
-    const image::WriteOptions& write_;
-    double interval_;
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 // Before anything is allocated.
 void check_film_fits(const Settings& settings, const RenderOptions& options)
@@ -177,6 +148,8 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
                      "Render some blocks again by independent samples and print the error found");
     render->add_option("--refresh", command.refresh,
                        "Write the pictures in progress so often, as 10s or 2m");
+    render->add_option("--preview", command.preview,
+                       "Show the picture in progress in a running viewer: tev or tev:HOST:PORT");
     render->add_option(
         "--pixel", command.pixel,
         "Run the paths of one pixel only, X,Y from the upper left, and print its value");
@@ -222,8 +195,7 @@ int run_render_command(const RenderCommand& command)
         throw std::runtime_error(fmt::format("--audit: needs a whole picture with at least {} "
                                              "samples, or --error or --time",
                                              standard_error_samples));
-    std::optional<Refresher> refresher;
-    if (!run.refresh.empty()) refresher.emplace(run, options, write);
+    ProgressPictures pictures(run, options, write);
     options.stop = &is_interrupted;
     if (options.pixel && !run.checkpoint.file.empty())
         throw std::runtime_error("--checkpoint: not for a single pixel; leave out --pixel");
@@ -238,13 +210,15 @@ int run_render_command(const RenderCommand& command)
     backend->upload(scene);
     options.observe = [&](const RenderState& state) {
         checkpoint.observe(state);
-        if (refresher) refresher->look_at(state);
+        pictures.look_at(state.film);
     };
 
+    pictures.begin(scene.settings[0]);
     ProgressBar bar;
     if (!run.is_quiet) options.progress = [&](const Progress& progress) { bar.show(progress); };
     const RenderResult result = render(*backend, scene, options, std::move(start));
     if (!run.is_quiet) bar.finish();
+    pictures.finish(result.film);
     const std::string lost = checkpoint.finish(result.film, result.schedule);
     if (!result.is_complete && result.statistics.paths == 0 && checkpoint.earlier_seconds() == 0)
         fmt::print(stderr, "notice: interrupted before the first samples; pictures are black\n");
@@ -281,8 +255,7 @@ int run_render_command(const RenderCommand& command)
     const double aim = options.error > 0 ? options.error : 1;
     std::optional<ErrorSummary> error;
     if (result.film.has_standard_error() && !options.pixel)
-        error =
-            summarise_error(result.film, grid_of(scene.settings[0], options), options.viewer, aim);
+        error = summarise_error(result.film, error_grid(scene.settings[0]), options.viewer, aim);
     std::optional<Audit> audited;
     if (run.is_audited) audited = audit(*backend, scene, options, result, aim);
     if (!run.is_quiet) print_summary(run, result);

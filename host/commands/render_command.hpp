@@ -23,6 +23,7 @@ struct RenderCommand {
     std::string pixel;
     std::string json;
     std::string refresh;
+    std::string preview;
     std::string view = "standard";
     image::WriteOptions write;
     bool is_audited = false;

@@ -201,16 +201,26 @@ std::vector<float> Film::means(const std::vector<double>& sums, size_t channels)
     return out;
 }
 
-image::Picture Film::picture() const
+std::vector<float> Film::beauty() const
 {
     const size_t pixels = data_.window.pixels();
-    std::vector<float> rgba(pixels * 4), errors(has_standard_error() ? pixels * 3 : 0);
-    std::vector<uint32_t> counts(pixels), objects(pixels), materials(pixels);
+    std::vector<float> rgba(pixels * 4);
     for (size_t p = 0; p < pixels; ++p) {
         const std::array<float, 3> mean = mean_of(p);
         std::copy(mean.begin(), mean.end(), &rgba[p * 4]);
+        const int samples = samples_of(p);
+        if (samples > 0) rgba[p * 4 + 3] = data_.alpha[p] / float(samples);
+    }
+    return padded(std::move(rgba), data_.window, width_, height_);
+}
+
+image::Picture Film::picture() const
+{
+    const size_t pixels = data_.window.pixels();
+    std::vector<float> errors(has_standard_error() ? pixels * 3 : 0);
+    std::vector<uint32_t> counts(pixels), objects(pixels), materials(pixels);
+    for (size_t p = 0; p < pixels; ++p) {
         counts[p] = uint32_t(samples_of(p));
-        if (counts[p] > 0) rgba[p * 4 + 3] = data_.alpha[p] / float(counts[p]);
         objects[p] = uint32_t(data_.object[p] + 1);  // 0: nothing was met
         materials[p] = uint32_t(data_.material[p] + 1);
         if (has_standard_error()) {
@@ -224,7 +234,7 @@ image::Picture Film::picture() const
     image::Picture picture;
     picture.width = width_;
     picture.height = height_;
-    picture.layers.push_back(image::beauty_layer(whole(std::move(rgba))));
+    picture.layers.push_back(image::beauty_layer(beauty()));
     picture.layers.push_back(image::albedo_layer(whole(means(data_.albedo, 3))));
     picture.layers.push_back(image::normal_layer(whole(means(data_.normal, 3))));
     picture.layers.push_back(image::depth_layer(whole(means(data_.distance, 1))));

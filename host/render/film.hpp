@@ -73,6 +73,9 @@ public:
     std::array<float, 3> standard_error(int x, int y) const;
     std::array<float, 3> albedo(int x, int y) const;  // mean
 
+    // R, G, B and coverage of every pixel of the picture.
+    std::vector<float> beauty() const;
+
     // Starts the sums anew; what the first samples met is kept.
     void forget_samples();
 

@@ -1,0 +1,70 @@
+#include "host/commands/progress_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace diptych {
+namespace {
+
+// "tev" or "tev:HOST:PORT".
+std::string address_of(const std::string& text)
+{
+    if (text == "tev") return "";
+    if (text.starts_with("tev:")) return text.substr(4);
+    throw std::runtime_error("--preview " + text + ": no such viewer; use tev or tev:HOST:PORT");
+}
+
+}  // namespace
+
+image::Picture picture_of(const Film& film, const RenderOptions& options)
+{
+    image::Picture picture = film.picture();
+    if (film.has_standard_error() && !options.pixel)
+        picture.layers.push_back(
+            image::predicted_error_layer(predicted_error(film, options.viewer)));
+    return picture;
+}
+
+ProgressPictures::ProgressPictures(const RenderCommand& command, const RenderOptions& options,
+                                   const image::WriteOptions& write)
+    : command_(command), options_(options), write_(write)
+{
+    if (!command.refresh.empty()) interval_ = parse_seconds("--refresh", command.refresh);
+    if (!command.preview.empty()) address_of(command.preview);
+}
+
+void ProgressPictures::begin(const Settings& settings)
+{
+    if (!command_.preview.empty())
+        viewer_.emplace(address_of(command_.preview),
+                        command_.outputs.empty() ? "diptych" : command_.outputs.front(),
+                        settings.width, settings.height);
+}
+
+void ProgressPictures::look_at(const Film& film)
+{
+    const Clock::time_point now = Clock::now();
+    if (viewer_ && now - last_sent_ >= std::chrono::seconds(1)) send(film);
+    if (interval_ <= 0 || std::chrono::duration<double>(now - last_written_).count() < interval_)
+        return;
+    const image::Picture picture = picture_of(film, options_);
+    for (const std::string& path : command_.outputs) image::write_picture(path, picture, write_);
+    last_written_ = Clock::now();
+}
+
+void ProgressPictures::finish(const Film& film)
+{
+    if (viewer_) send(film);
+}
+
+void ProgressPictures::send(const Film& film)
+{
+    if (!viewer_->update(film.beauty())) {
+        fmt::print(stderr, "notice: the viewer has gone; rendering goes on\n");
+        viewer_.reset();
+    }
+    last_sent_ = Clock::now();
+}
+
+}  // namespace diptych

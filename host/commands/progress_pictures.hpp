@@ -1,0 +1,40 @@
+// Pictures of a render in progress: files that are rewritten now and then, and a viewer.
+#pragma once
+
+#include "host/commands/render_command.hpp"
+#include "host/image/tev_client.hpp"
+
+#include <chrono>
+#include <optional>
+
+namespace diptych {
+
+// What is written: the film's layers, and where its error is known, how visible it is.
+image::Picture picture_of(const Film& film, const RenderOptions& options);
+
+class ProgressPictures {
+public:
+    // Throws std::runtime_error for flags of no sense.
+    ProgressPictures(const RenderCommand& command, const RenderOptions& options,
+                     const image::WriteOptions& write);
+
+    // Opens the viewer's picture; throws std::runtime_error where none answers.
+    void begin(const Settings& settings);
+    void look_at(const Film& film);  // often; most times nothing is due
+    void finish(const Film& film);   // the viewer's last; files are written by who calls
+
+private:
+    void send(const Film& film);
+
+    using Clock = std::chrono::steady_clock;
+
+    const RenderCommand& command_;
+    const RenderOptions& options_;
+    const image::WriteOptions& write_;
+    double interval_ = 0;  // seconds between files; 0: none
+    std::optional<image::TevClient> viewer_;
+    Clock::time_point last_written_ = Clock::now();
+    Clock::time_point last_sent_;
+};
+
+}  // namespace diptych
