@@ -196,6 +196,7 @@ TEST_F(BadInput, TargetsOfNoSense)
     for (const char* time : {"0", "0s", "-3s", "nan", "5x", "s", "inf"})
         expect_refusal({"--time", time}, "--time");
     expect_refusal({"--refresh", "0"}, "--refresh");
+    expect_refusal({"--preview", "eog"}, "--preview");
     expect_refusal({"--memory", "20K", "--backend", "cpu"}, "--memory");
     expect_refusal({"--memory", "20K", "--backend", "twin"}, "--memory");
     expect_refusal({"--unbiased"}, "--unbiased");
