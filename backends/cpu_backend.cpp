@@ -59,8 +59,8 @@ public:
                                                  options_.memory_bytes >> 10, threads_,
                                                  ((fixed + result_bytes) >> 10) + 1));
         const size_t room = options_.memory_bytes - fixed;
-        // Beyond some thousand items a dispatch gains nothing: they run one after the other anyway.
-        plan.items = int(std::clamp<size_t>(room / (4 * result_bytes), 1, 1024));
+        // Beyond some hundred items a dispatch gains nothing: they run one after the other anyway.
+        plan.items = int(std::clamp<size_t>(room / (4 * result_bytes), 1, 128));
         plan.path_bytes = fixed + size_t(plan.items) * result_bytes;
         return plan;
     }

@@ -23,6 +23,60 @@ void for_pixels_around(const Film& film, int x, int y, const Visit& visit)
         for (int u = std::max(x - 1, window.x); u <= right; ++u) visit(u, v);
 }
 
+// Mean albedo of every pixel of the window, as luminance.
+std::vector<float> albedo_luminances(const Film& film)
+{
+    const Window& window = film.data().window;
+    std::vector<float> values(window.pixels());
+    for (int y = 0; y < window.height; ++y)
+        for (int x = 0; x < window.width; ++x)
+            values[size_t(y) * size_t(window.width) + size_t(x)] =
+                luminance(film.albedo(window.x + x, window.y + y));
+    return values;
+}
+
+// value(u, v): of the albedo's luminance at a pixel.
+template<class Value>
+float contrast_around(const Film& film, int x, int y, const Value& value)
+{
+    float sum = 0, square = 0;
+    int count = 0;
+    for_pixels_around(film, x, y, [&](int u, int v) {
+        const float here = value(u, v);
+        sum += here;
+        square += here * here;
+        ++count;
+    });
+    const float mean = sum / float(count);
+    const float variance = std::max(square / float(count) - mean * mean, 0.0f);
+    return mean > 0 ? std::sqrt(variance) / mean : 0;
+}
+
+// Errors of many pixels: pixel_error with the albedos worked out once.
+class PixelErrors {
+public:
+    PixelErrors(const Film& film, const Viewer& viewer)
+        : film_(film), viewer_(viewer), albedos_(albedo_luminances(film))
+    {
+    }
+
+    float at(int x, int y) const
+    {
+        const std::array<float, 3> error = film_.standard_error(x, y);
+        if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
+        const Window& window = film_.data().window;
+        const float contrast = contrast_around(film_, x, y, [&](int u, int v) {
+            return albedos_[size_t(v - window.y) * size_t(window.width) + size_t(u - window.x)];
+        });
+        return visible_error(film_.radiance(x, y), error, contrast, viewer_);
+    }
+
+private:
+    const Film& film_;
+    const Viewer& viewer_;
+    std::vector<float> albedos_;
+};
+
 int quantised(double error)
 {
     return int(std::min(std::ceil(error * error_unit), double(1 << 30)));
@@ -34,21 +88,36 @@ double share_below(double bound, double deviation)
     return deviation > 0 ? std::erf(bound / (deviation * std::sqrt(2.0))) : 1;
 }
 
+// RMS of `confidence` standard errors over the block's pixels that the film holds.
+BlockError block_error(const Film& film, const PixelErrors& errors, Pixel corner, int shift)
+{
+    const int parts = std::max(1, 1 << (shift - part_shift));
+    const int part_side = (1 << shift) / parts;
+    const int right = std::min(corner.x + (1 << shift), film.width());
+    const int low = std::min(corner.y + (1 << shift), film.height());
+    double all = 0, worst = 0;
+    int pixels = 0;
+    for (int top = corner.y; top < low; top += part_side)
+        for (int left = corner.x; left < right; left += part_side) {
+            double sum = 0;
+            int count = 0;
+            for (int y = top; y < std::min(top + part_side, low); ++y)
+                for (int x = left; x < std::min(left + part_side, right); ++x, ++count) {
+                    const double error = double(confidence * errors.at(x, y));
+                    sum += error * error;
+                }
+            all += sum;
+            pixels += count;
+            worst = std::max(worst, sum / count);
+        }
+    return {quantised(std::sqrt(all / pixels)), quantised(std::sqrt(worst))};
+}
+
 }  // namespace
 
 float texture_contrast(const Film& film, int x, int y)
 {
-    float sum = 0, square = 0;
-    int count = 0;
-    for_pixels_around(film, x, y, [&](int u, int v) {
-        const float value = luminance(film.albedo(u, v));
-        sum += value;
-        square += value * value;
-        ++count;
-    });
-    const float mean = sum / float(count);
-    const float variance = std::max(square / float(count) - mean * mean, 0.0f);
-    return mean > 0 ? std::sqrt(variance) / mean : 0;
+    return contrast_around(film, x, y, [&](int u, int v) { return luminance(film.albedo(u, v)); });
 }
 
 float pixel_error(const Film& film, int x, int y, const Viewer& viewer)
@@ -70,36 +139,13 @@ float pixel_bound(const Film& film, int x, int y, const Viewer& viewer)
     return confidence * std::sqrt(sum / float(count));
 }
 
-BlockError block_error(const Film& film, Pixel corner, int shift, const Viewer& viewer)
-{
-    const int parts = std::max(1, 1 << (shift - part_shift));
-    const int part_side = (1 << shift) / parts;
-    const int right = std::min(corner.x + (1 << shift), film.width());
-    const int low = std::min(corner.y + (1 << shift), film.height());
-    double all = 0, worst = 0;
-    int pixels = 0;
-    for (int top = corner.y; top < low; top += part_side)
-        for (int left = corner.x; left < right; left += part_side) {
-            double sum = 0;
-            int count = 0;
-            for (int y = top; y < std::min(top + part_side, low); ++y)
-                for (int x = left; x < std::min(left + part_side, right); ++x, ++count) {
-                    const double error = double(confidence * pixel_error(film, x, y, viewer));
-                    sum += error * error;
-                }
-            all += sum;
-            pixels += count;
-            worst = std::max(worst, sum / count);
-        }
-    return {quantised(std::sqrt(all / pixels)), quantised(std::sqrt(worst))};
-}
-
 std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, const Viewer& viewer)
 {
+    const PixelErrors pixels(film, viewer);
     std::vector<BlockError> errors;
     errors.reserve(grid.corners.size());
     for (const Pixel& corner : grid.corners)
-        errors.push_back(block_error(film, corner, grid.shift, viewer));
+        errors.push_back(block_error(film, pixels, corner, grid.shift));
     return errors;
 }
 
@@ -126,11 +172,12 @@ ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const View
 
 std::vector<float> predicted_error(const Film& film, const Viewer& viewer)
 {
+    const PixelErrors errors(film, viewer);
     const int width = film.width(), height = film.height();
     std::vector<float> squares(size_t(width) * size_t(height)), out(squares.size());
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const float error = pixel_error(film, x, y, viewer);
+            const float error = errors.at(x, y);
             squares[size_t(y) * size_t(width) + size_t(x)] = error * error;
         }
     for (int y = 0; y < height; ++y)

@@ -21,8 +21,7 @@ float pixel_error(const Film& film, int x, int y, const Viewer& viewer);
 // its neighbours, 3 x 3 pixels.
 float pixel_bound(const Film& film, int x, int y, const Viewer& viewer);
 
-// RMS of `confidence` standard errors over the block's pixels that the film holds.
-BlockError block_error(const Film& film, Pixel corner, int shift, const Viewer& viewer);
+// Of each block: RMS of `confidence` standard errors over its pixels.
 std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, const Viewer& viewer);
 
 // What the film's error is expected to be.

@@ -50,9 +50,9 @@ TEST(Adaptive, ThreadsMemoryAndDispatchesChangeNoBit)
         large.threads = 2;
         small.threads = 1;
         small.memory_bytes = 3u << 20;
-        const Picture one = render_with(backend, large, to_error(6));
-        EXPECT_TRUE(is_same(one, render_with(backend, small, to_error(6)))) << backend;
-        RenderOptions pieces = to_error(6);
+        const Picture one = render_with(backend, large, to_error(1.5));
+        EXPECT_TRUE(is_same(one, render_with(backend, small, to_error(1.5)))) << backend;
+        RenderOptions pieces = to_error(1.5);
         pieces.most_items = 3;
         EXPECT_TRUE(is_same(one, render_with(backend, large, pieces))) << backend;
         const auto [least, most] = std::minmax_element(one.counts.begin(), one.counts.end());
@@ -67,13 +67,13 @@ TEST(Adaptive, GoesOnFromAnyDispatchToTheSamePicture)
     const std::unique_ptr<Backend> backend = make_backend("cpu", {});
     backend->upload(scene);
     for (const bool is_unbiased : {false, true}) {
-        RenderOptions options = to_error(6);
+        RenderOptions options = to_error(1.5);
         options.is_unbiased = is_unbiased;
         options.most_items = 5;
         std::vector<RenderState> states;
         int calls = 0;
         options.observe = [&](const RenderState& state) {
-            if (++calls % 37 == 0) states.push_back(state);
+            if (++calls % 29 == 0) states.push_back(state);
         };
         const Picture whole = picture_of(render(*backend, scene, options));
         options.observe = nullptr;
