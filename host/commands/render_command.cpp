@@ -192,9 +192,10 @@ int run_render_command(const RenderCommand& command)
     set_targets(run.error, run.scene.samples, options);
     set_range(run.checkpoint.range, options);
     if (run.is_audited && (options.pixel || options.samples < standard_error_samples))
-        throw std::runtime_error(fmt::format("--audit: needs a whole picture with at least {} "
-                                             "samples, or --error or --time",
-                                             standard_error_samples));
+        throw std::runtime_error(
+            fmt::format("--audit: the error is not known; give a whole picture "
+                        "{} samples or more, or --error or --time",
+                        standard_error_samples));
     ProgressPictures pictures(run, options, write);
     options.stop = &is_interrupted;
     if (options.pixel && !run.checkpoint.file.empty())
