@@ -58,6 +58,8 @@ private:
     void add_meshes();
     std::vector<MeshPart> mesh_parts(int mesh);
     bool read_part(const tinygltf::Primitive& primitive, const std::string& where, MeshPart& part);
+    bool read_uv_set(const tinygltf::Primitive& primitive, size_t set, const std::string& where,
+                     MeshPart& part);
     void read_uvs(const tinygltf::Primitive& primitive, const std::string& where, MeshPart& part);
     void read_colors(const tinygltf::Primitive& primitive, const std::string& where,
                      MeshPart& part);

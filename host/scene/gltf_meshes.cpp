@@ -49,6 +49,22 @@ void check_count(size_t count, size_t expected, const std::string& where)
 
 }  // namespace
 
+// The set of the primitive, unless it was read before. False where it has none.
+bool GltfLoader::read_uv_set(const tinygltf::Primitive& primitive, size_t set,
+                             const std::string& where, MeshPart& part)
+{
+    if (part.uvs.size() <= set) part.uvs.resize(set + 1);
+    if (!part.uvs[set].empty()) return true;
+    const std::string key = fmt::format("TEXCOORD_{}", set);
+    const auto at = primitive.attributes.find(key);
+    if (at == primitive.attributes.end()) return false;
+    part.uvs[set] =
+        as_vectors<float2>(accessor_floats(document_, at->second, 2, 0, where + ", " + key));
+    check_count(part.uvs[set].size(), part.positions.size(), where + ", " + key);
+    return true;
+}
+
+// What the material's images read, and what its textures' nodes may ask for.
 void GltfLoader::read_uvs(const tinygltf::Primitive& primitive, const std::string& where,
                           MeshPart& part)
 {
@@ -59,6 +75,10 @@ void GltfLoader::read_uvs(const tinygltf::Primitive& primitive, const std::strin
     for (const TextureUse* use :
          {&m.base_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture,
           &m.specular_texture, &m.specular_color_texture}) {
+        if (use->node >= 0) {
+            for (const size_t set : {size_t(0), size_t(1)})
+                read_uv_set(primitive, set, where, part);
+        }
         if (use->image < 0) {
             continue;
         }
@@ -67,22 +87,7 @@ void GltfLoader::read_uvs(const tinygltf::Primitive& primitive, const std::strin
                                          "read",
                                          where, use->uv_set));
         }
-        const size_t set = size_t(use->uv_set);
-        if (part.uvs.size() <= set) {
-            part.uvs.resize(set + 1);
-        }
-        if (!part.uvs[set].empty()) {
-            continue;
-        }
-        const std::string key = fmt::format("TEXCOORD_{}", set);
-        const auto at = primitive.attributes.find(key);
-        if (at == primitive.attributes.end()) {
-            ++missing_uv_sets_;
-            continue;
-        }
-        part.uvs[set] =
-            as_vectors<float2>(accessor_floats(document_, at->second, 2, 0, where + ", " + key));
-        check_count(part.uvs[set].size(), part.positions.size(), where + ", " + key);
+        if (!read_uv_set(primitive, size_t(use->uv_set), where, part)) ++missing_uv_sets_;
     }
 }
 

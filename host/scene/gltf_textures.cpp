@@ -121,8 +121,9 @@ public:
         } catch (const std::runtime_error& error) {
             throw SceneError(fmt::format("texture node {}: {}", entry.name, error.what()));
         }
+        auto& defaults = defaults_[int(functions_.size())];
         for (const TextureArgument& argument : function.arguments)
-            defaults_[int(functions_.size())][argument.name] = argument.default_value;
+            defaults[argument.name] = argument.default_value;
         for (const std::string& warning : function.warnings) scene.notice(warning);
         return functions_[key] = scene.add_texture_function(std::move(function));
     }

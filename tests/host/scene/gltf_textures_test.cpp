@@ -86,6 +86,25 @@ std::vector<uint> bits(const std::vector<float>& values)
     return words;
 }
 
+// Where no image reads them, textures still do; and a function may have no arguments at all.
+TEST(GltfTextures, MeshesKeepTheCoordinatesThatTexturesAskFor)
+{
+    GltfText gltf;
+    json& primitive = gltf.add_triangle();
+    primitive["material"] = 0;
+    primitive["attributes"]["TEXCOORD_0"] =
+        gltf.add_accessor(std::vector<float>{0, 0, 0.25f, 0, 0.25f, 0.75f}, "VEC2", 5126, 3);
+    gltf.document["materials"] = {{{"name", "wall"}}};
+    write_file("where.c", "float2 place() { float2 uv = readAttr(\"TexCoord0\"); return uv; }\n");
+    LoadOptions options;
+    options.textures = {"wall.baseColor=" + (test_folder() / "where.c").string()};
+    const SceneData scene = load_scene(gltf.write(), options);
+    EXPECT_EQ(scene.settings.at(0).texture_uv_set[0], 0);
+    ASSERT_EQ(scene.uvs.size(), 3u);
+    EXPECT_EQ(scene.uvs[2].x, 0.25f);
+    EXPECT_EQ(scene.uvs[2].y, 0.75f);
+}
+
 TEST(GltfTextures, EveryKindOfArgumentArrives)
 {
     const SceneData scene = load(textured());
