@@ -6,6 +6,7 @@
 #include "kernels_cpu/chunk.hpp"
 #include "kernels_cpu/parallel_for.hpp"
 #include "kernels_cpu/stage_tracer.hpp"
+#include "kernels_cpu/texture_rays.hpp"
 
 #include <fmt/format.h>
 
@@ -220,6 +221,7 @@ void CpuBackend::build_textures(const SceneData& scene)
     auto stage = std::make_unique<NativeStage>(scene, options);
     chunks_.clear();  // they run the old one
     textures_ = std::move(stage);
+    if (uses_embree_) textures_->set_tracer(trace_texture_ray_by_ray, embree_.get());
     scene_view_.textures = &textures_->kernels();
 }
 

@@ -7,6 +7,7 @@
 #include "host/commands/merge_command.hpp"
 #include "host/commands/render_command.hpp"
 #include "host/commands/selftest_command.hpp"
+#include "host/commands/study_command.hpp"
 #include "host/commands/texture_command.hpp"
 #include "host/commands/watch_command.hpp"
 #include "host/image/compare_cli.hpp"
@@ -72,6 +73,8 @@ int run(int count, char** arguments)
     const CLI::App* selftest_command = add_selftest_command(app, selftest);
     TextureCommand texture;
     const CLI::App* texture_command = add_texture_command(app, texture);
+    StudyCommand study;
+    const CLI::App* study_command = add_study_command(app, study);
     DebugCommand debug;
     debug.words.assign(arguments, arguments + count);
     const CLI::App* debug_command = add_debug_command(app, debug);
@@ -89,6 +92,7 @@ int run(int count, char** arguments)
     if (devices_command->parsed()) return run_devices_command();
     if (selftest_command->parsed()) return run_selftest_command(selftest);
     if (texture_command->parsed()) return run_texture_command(*texture_command, texture);
+    if (study_command->parsed()) return run_study_command(study);
     if (debug_command->parsed()) return run_debug_command(debug);
     if (compare_command->parsed() && !compare.compare.backends.empty())
         return run_compare_backends(compare, std::cout);

@@ -4,6 +4,7 @@
 // TEXTURE_SLOTS as in kernels_cpu/texture_stage.cpp.
 #include "platform.h"
 
+#include "common/stages/trace_texture_rays.h"
 #include "common/textures/procedural.h"
 #include "common/user_language/as_opencl/user_language.h"
 #include "kernels_cl/arguments.h"
@@ -13,6 +14,12 @@
 #include "common/textures/as_vectors/hooks.h"
 #include "common/user_language/as_vectors/arguments.h"
 // clang-format on
+
+// In place of tx_occlusion where the study has textures trace their rays themselves.
+SHARED float tx_traced_occlusion(const TextureContext* tx, int request)
+{
+    return texture_openness_at(tx->scene, tx->paths, tx->path, tx->first_occlusion + request);
+}
 
 #pragma diptych textures
 

@@ -546,4 +546,50 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
     return rays;
 }
 
+void EmbreeScene::occlusion_of_neighbours(const SceneView& scene_view, const PathView& path_view,
+                                          int count) const
+{
+    const Views views = typed(scene_view, path_view);
+    const Paths& paths = views.paths;
+    PacketContext context;
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.views = &views;
+    context.first_triangle = implementation_->first_triangle.data();
+    context.purpose = 1;
+    alignas(64) int valid[width];
+    alignas(64) Rays packet;
+    for (int k = 0; k < width; ++k) {
+        packet.tnear[k] = 0.0f;
+        packet.time[k] = 0.0f;
+        packet.mask[k] = ~0u;
+        packet.id[k] = unsigned(k);
+        packet.flags[k] = 0;
+    }
+    const int n = paths.capacity;
+    for (int first = 0; first < count; first += width) {
+        const auto copy = [first](float(&to)[width], const float* plane) {
+            for (int k = 0; k < width; ++k) to[k] = plane[first + k];
+        };
+        copy(packet.org_x, paths.shadow_origin);
+        copy(packet.org_y, paths.shadow_origin + n);
+        copy(packet.org_z, paths.shadow_origin + 2 * n);
+        copy(packet.dir_x, paths.shadow_direction);
+        copy(packet.dir_y, paths.shadow_direction + n);
+        copy(packet.dir_z, paths.shadow_direction + 2 * n);
+        copy(packet.tfar, paths.shadow_distance);
+        for (int k = 0; k < width; ++k) {
+            context.path[k] = first + k;
+            valid[k] = first + k < count ? -1 : 0;
+        }
+#if defined(__AVX512F__)
+        rtcOccluded16(valid, implementation_->top, &context.embree, &packet);
+#else
+        rtcOccluded8(valid, implementation_->top, &context.embree, &packet);
+#endif
+        for (int k = 0; k < width; ++k)
+            paths.is_occluded[first + k] = packet.tfar[k] < 0.0f ? 1 : 0;
+    }
+}
+
 }  // namespace diptych

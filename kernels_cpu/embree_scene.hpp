@@ -35,6 +35,9 @@ public:
     // Shadow rays of the paths whose light contribution is not black. Returns their number. A view
     // without records takes surfaces whose alpha a texture gives for solid.
     int occlusion(const SceneView&, const PathView&, int count) const;
+    // Shadow rays 0 .. count - 1, all of them, of which neighbours have much of their way in
+    // common.
+    void occlusion_of_neighbours(const SceneView&, const PathView&, int count) const;
 
     size_t bytes() const;  // what Embree allocated
     static std::string version();

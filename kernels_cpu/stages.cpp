@@ -54,11 +54,21 @@ int variant_for(unsigned effects)
     while ((effects & ~variants[k]) != 0) ++k;
     return k;
 }
-unsigned covered_effects(unsigned effects) { return variants[variant_for(effects)]; }
+// Only the surface's evaluation reads what textures gave: the other stages run as without them.
+unsigned effects_for(Stage stage, unsigned effects)
+{
+    return stage == STAGE_evaluate_surface ? effects : effects & ~unsigned(EFFECT_PROCEDURAL);
+}
+unsigned covered_effects(unsigned effects)
+{
+    return variants[variant_for(effects)] |
+           variants[variant_for(effects_for(STAGE_sample_light, effects))];
+}
 #else
 #define OVER_PATHS
 #define EFFECTS_OF(variant, view) (view).effects
 int variant_for(unsigned) { return variant_count - 1; }
+unsigned effects_for(Stage, unsigned effects) { return effects; }
 unsigned covered_effects(unsigned effects) { return effects; }
 #endif
 
@@ -92,7 +102,7 @@ ENTRY_walk(intersect) ENTRY_walk(occlusion) ENTRY_walk(trace_texture_rays)
 
     StageLoop loop_of(Stage stage, unsigned effects)
 {
-    const int variant = variant_for(effects);
+    const int variant = variant_for(effects_for(stage, effects));
 #if VECTORISED
 #define LOOPS_OF(name)                                                                   \
     static constexpr StageLoop name##_loops[] = {                                        \

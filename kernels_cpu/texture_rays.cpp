@@ -4,8 +4,10 @@
 
 #include "common/as_cpp/path_rows.hpp"
 #include "common/textures/texture_rays.h"
+#include "kernels_cpu/texture_ray_loops.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace diptych {
@@ -13,9 +15,9 @@ namespace {
 
 #include "kernels_cpu/typed_views.hpp"
 
-constexpr int lane_count = 64;  // paths whose rays are traced together
 constexpr int most_rays = 256;  // of a request
 constexpr int passes = 8;       // surfaces that a ray to its own object passes, as in the walk
+constexpr int padding = 48;     // packets are read and written whole; planes no power of two apart
 
 // Rays in planes of their own, for EmbreeScene to read as if they were paths.
 class Rays {
@@ -59,55 +61,13 @@ private:
     PathView view_;
 };
 
-struct Views {
-    Scene scene;
-    Paths paths;
-};
-
-Views typed(const SceneView& scene, const PathView& paths)
+// Rays that only their own object stops: the nearest hits, pass by pass, until all are decided. The
+// others have a depth below zero and are left alone.
+int trace_to_own_object(const EmbreeScene& embree, const SceneView& scene_view, const Scene& scene,
+                        const AskingPaths& asking, const Rays& rays)
 {
-    return {scene_from(scene), paths_from(paths)};
-}
-
-// The paths whose rays are traced together, each with its place.
-struct Lanes {
-    int count = 0;
-    int path[lane_count];
-    TextureRequests requests[lane_count];
-    TexturePlace place[lane_count];
-};
-
-// One ray of a request of each lane into slots first ...; lanes without that request stay dark.
-void add_rays(const Views& views, const Lanes& lanes, const Rays& rays, int request, int ray,
-              int first)
-{
-    for (int k = 0; k < lanes.count; ++k) {
-        const int i = lanes.path[k], at = first + k;
-        const bool is_asked = request < lanes.requests[k].count;
-        const TextureRequest asked =
-            texture_request(&views.scene, lanes.requests[k].first, is_asked ? request : 0);
-        const TextureRay r = texture_ray(&views.scene, &views.paths, i, lanes.place[k], request,
-                                         asked.hemisphere, ray);
-        rays.set3(row_shadow_origin, at, r.origin);
-        rays.set3(row_shadow_direction, at, r.direction);
-        rays.reals(row_shadow_distance)[at] = asked.distance;
-        const float wanted = is_asked && !asked.is_same_object ? 1.0f : 0.0f;
-        rays.set3(row_light_contribution, at, make_float3(wanted, 0.0f, 0.0f));
-        rays.ints(row_is_occluded)[at] = 0;
-        rays.ints(row_pixel)[at] = get_pixel(&views.paths, i);
-        rays.ints(row_sample)[at] = texture_ray_sample(get_sample(&views.paths, i), request, ray);
-        rays.ints(row_depth)[at] =
-            is_asked && asked.is_same_object ? get_depth(&views.paths, i) : -1;
-    }
-}
-
-// Rays that only their own object stops: the nearest hits, pass by pass, until all are decided.
-int trace_to_own_object(const EmbreeScene& embree, const SceneView& scene_view, const Views& views,
-                        const Lanes& lanes, const Rays& rays, int count)
-{
+    const int n = rays.view().capacity, count = asking.bundles * asking.rays;
     int* depth = rays.ints(row_depth);
-    if (std::none_of(depth, depth + count, [](int d) { return d >= 0; })) return 0;
-    const int n = rays.view().capacity;
     std::copy_n(rays.reals(row_shadow_origin), 3 * n, rays.reals(row_ray_origin));
     std::copy_n(rays.reals(row_shadow_direction), 3 * n, rays.reals(row_ray_direction));
     int traced = 0;
@@ -124,14 +84,14 @@ int trace_to_own_object(const EmbreeScene& embree, const SceneView& scene_view, 
             const int alive = depth[k];
             depth[k] = -1;
             if (triangle < 0) continue;
-            const WorldTriangle world = world_triangle(&views.scene, instance, triangle);
+            const WorldTriangle world = world_triangle(&scene, instance, triangle);
             const float2 w = triangle_barycentrics(world, origin, direction);
             const float3 at = world.corner + world.edge1 * w.x + world.edge2 * w.y;
             const float t = vec_dot(at - origin, direction);
             if (t > rest) continue;
-            const TexturePlace& place = lanes.place[k % lanes.count];
-            const int own = texture_object(&views.scene, place.instance, place.triangle);
-            if (texture_object(&views.scene, instance, triangle) == own) {
+            const int lane = asking.path_of_bundle[k / asking.rays];
+            const int own = texture_object(&scene, asking.instance[lane], asking.triangle[lane]);
+            if (texture_object(&scene, instance, triangle) == own) {
                 rays.ints(row_is_occluded)[k] = 1;
                 continue;
             }
@@ -146,53 +106,117 @@ int trace_to_own_object(const EmbreeScene& embree, const SceneView& scene_view, 
     return traced;
 }
 
-int trace_lanes(const EmbreeScene& embree, const SceneView& scene_view, const Views& views,
-                const Lanes& lanes, Rays& rays)
+// Of the rays of one request of all lanes, which are occluded.
+int trace_bundles(const EmbreeScene& embree, const SceneView& scene_view, const Scene& scene,
+                  const AskingPaths& asking, const Rays& rays)
 {
-    const int per_request = std::min(views.scene.settings[0].occlusion_rays, most_rays);
-    int most = 0, traced = 0;
-    for (int k = 0; k < lanes.count; ++k) most = std::max(most, lanes.requests[k].count);
-    for (int request = 0; request < most; ++request) {
-        const int count = per_request * lanes.count;
-        for (int ray = 0; ray < per_request; ++ray)
-            add_rays(views, lanes, rays, request, ray, ray * lanes.count);
-        traced += embree.occlusion(scene_view, rays.view(), count);
-        traced += trace_to_own_object(embree, scene_view, views, lanes, rays, count);
-        for (int k = 0; k < lanes.count; ++k) {
-            if (request >= lanes.requests[k].count) continue;
-            int open = 0;
-            for (int ray = 0; ray < per_request; ++ray)
-                open += 1 - rays.ints(row_is_occluded)[ray * lanes.count + k];
-            set_occlusion_result(&views.paths, request, lanes.path[k],
-                                 float(open) / float(per_request));
-        }
+    const int* is_same_object = asking.is_same_object;
+    const int same = int(std::count(is_same_object, is_same_object + asking.bundles, 1));
+    const int count = asking.bundles * asking.rays;
+    if (same == 0) {
+        embree.occlusion_of_neighbours(scene_view, rays.view(), count);
+        return count;
     }
-    return traced;
+    for (int k = 0; k < count; ++k) {
+        const bool is_same = is_same_object[k / asking.rays] != 0;
+        rays.ints(row_is_occluded)[k] = 0;
+        rays.set3(row_light_contribution, k, make_float3(is_same ? 0.0f : 1.0f, 0.0f, 0.0f));
+    }
+    const int traced = embree.occlusion(scene_view, rays.view(), count);
+    for (int k = 0; k < count; ++k)
+        if (is_same_object[k / asking.rays] == 0) rays.ints(row_depth)[k] = -1;
+    return traced + trace_to_own_object(embree, scene_view, scene, asking, rays);
 }
+
+// The work of one thread.
+struct Tracer {
+    const TextureRayLoops loops;
+    const EmbreeScene& embree;
+    const SceneView& scene_view;
+    const PathView& path_view;
+    const Scene scene = scene_from(scene_view);
+    const Paths paths = paths_from(path_view);
+    int traced = 0;
+
+    // All requests of the paths in `asking`, which are then done with.
+    void trace(AskingPaths& asking, Rays& rays)
+    {
+        if (asking.count == 0) return;
+        loops.places(scene_view, path_view, asking);
+        for (int request = 0;; ++request) {
+            loops.rays(scene_view, path_view, asking, request, rays.view());
+            if (asking.bundles == 0) break;
+            traced += trace_bundles(embree, scene_view, scene, asking, rays);
+            const int* is_occluded = rays.ints(row_is_occluded);
+            for (int k = 0; k < asking.bundles; ++k, is_occluded += asking.rays) {
+                const int open =
+                    asking.rays - std::accumulate(is_occluded, is_occluded + asking.rays, 0);
+                set_occlusion_result(&paths, request, asking.path[asking.path_of_bundle[k]],
+                                     float(open) / float(asking.rays));
+            }
+        }
+        asking.count = 0;
+    }
+};
 
 }  // namespace
 
 int trace_texture_rays(const EmbreeScene& embree, const SceneView& scene_view,
                        const PathView& path_view, int count)
 {
-    const Views views = typed(scene_view, path_view);
-    thread_local Rays rays(lane_count * most_rays + 16);
-    Lanes lanes;
-    int traced = 0;
+    const TextureRayLoops loops = vector_texture_ray_loops(scene_view.effects);
+    thread_local Rays rays(AskingPaths::capacity * most_rays + padding);
+    thread_local AskingPaths asking;
+    thread_local std::vector<int> programs;
+    programs.resize(size_t(count));
+    loops.programs(scene_view, path_view, 0, count, programs.data());
+    Tracer tracer{loops, embree, scene_view, path_view};
     for (int i = 0; i < count; ++i) {
-        const int program = texture_program_of(&views.scene, &views.paths, i);
-        if (program == 0 || get_depth(&views.paths, i) < 0) continue;
-        const TextureRequests requests = texture_requests(&views.scene, program);
-        if (requests.count == 0) continue;
-        lanes.path[lanes.count] = i;
-        lanes.requests[lanes.count] = requests;
-        lanes.place[lanes.count] = texture_place(&views.scene, &views.paths, i);
-        if (++lanes.count < lane_count) continue;
-        traced += trace_lanes(embree, scene_view, views, lanes, rays);
-        lanes.count = 0;
+        const int program = programs[size_t(i)];
+        if (program == 0 || texture_requests(&tracer.scene, program).count == 0) continue;
+        asking.path[asking.count] = i;
+        asking.program[asking.count++] = program;
+        if (asking.count == AskingPaths::capacity) tracer.trace(asking, rays);
     }
-    if (lanes.count > 0) traced += trace_lanes(embree, scene_view, views, lanes, rays);
-    return traced;
+    tracer.trace(asking, rays);
+    return tracer.traced;
+}
+
+float trace_texture_ray_by_ray(const void* embree_scene, const SceneView& scene_view,
+                               const PathView& path_view, int path, int request)
+{
+    const EmbreeScene& embree = *static_cast<const EmbreeScene*>(embree_scene);
+    const Scene scene = scene_from(scene_view);
+    const Paths paths = paths_from(path_view);
+    thread_local Rays rays(padding);
+    thread_local AskingPaths asking;
+    asking.count = 1;
+    asking.path[0] = path;
+    asking.program[0] = texture_program_of(&scene, &paths, path);
+    const TexturePlace place = texture_place(&scene, &paths, path);
+    asking.triangle[0] = place.triangle;
+    asking.instance[0] = place.instance;
+    const TextureRequests requests = texture_requests(&scene, asking.program[0]);
+    const TextureRequest asked = texture_request(&scene, requests.first, request);
+    const uint seed = texture_ray_seed(&scene, &paths, path, place, request);
+    asking.bundles = asking.rays = 1;
+    asking.path_of_bundle[0] = 0;
+    asking.is_same_object[0] = asked.is_same_object;
+    const int count = scene.settings[0].occlusion_rays;
+    const Paths one = paths_from(rays.view());
+    int open = 0;
+    for (int ray = 0; ray < count; ++ray) {
+        const TextureRay r = texture_ray(place, seed, asked.hemisphere, ray);
+        set_shadow_origin(&one, 0, r.origin);
+        set_shadow_direction(&one, 0, r.direction);
+        set_shadow_distance(&one, 0, asked.distance);
+        set_pixel(&one, 0, get_pixel(&paths, path));
+        set_sample(&one, 0, texture_ray_sample(get_sample(&paths, path), request, ray));
+        set_depth(&one, 0, get_depth(&paths, path));
+        trace_bundles(embree, scene_view, scene, asking, rays);
+        open += 1 - get_is_occluded(&one, 0);
+    }
+    return float(open) / float(count);
 }
 
 }  // namespace diptych

@@ -10,4 +10,8 @@ namespace diptych {
 // Fills the occlusion results of paths 0 .. count - 1. Returns the number of rays.
 int trace_texture_rays(const EmbreeScene&, const SceneView&, const PathView&, int count);
 
+// TracingTextureKernels::openness by an EmbreeScene: rays one by one.
+float trace_texture_ray_by_ray(const void* embree_scene, const SceneView&, const PathView&,
+                               int path, int request);
+
 }  // namespace diptych

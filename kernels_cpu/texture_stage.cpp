@@ -14,15 +14,38 @@
 #include <utility>
 
 #include "kernels_cpu/kernels.hpp"
+#include "kernels_cpu/texture_tracer.hpp"
 
 #include "platform.h"
 
+#if !VECTORISED
+#include "common/stages/trace_texture_rays.h"
+#endif
 #include "common/textures/procedural.h"
 #include "common/user_language/as_cpp/user_language.h"
+
+#if VECTORISED
+// What the thread evaluates, for textures that have a ray traced.
+static thread_local const diptych::SceneView* evaluated_scene;
+static thread_local const diptych::PathView* evaluated_paths;
+
+static float texture_openness_at(const Scene*, const Paths*, int path, int request)
+{
+    const auto& kernels =
+        *static_cast<const diptych::TracingTextureKernels*>(evaluated_scene->textures);
+    return kernels.openness(kernels.tracer, *evaluated_scene, *evaluated_paths, path, request);
+}
+#endif
 
 namespace user_language {
 #include "common/textures/as_vectors/hooks.h"
 #include "common/user_language/as_vectors/arguments.h"
+
+// In place of tx_occlusion where the study has textures trace their rays themselves.
+SHARED float tx_traced_occlusion(const TextureContext* tx, int request)
+{
+    return texture_openness_at(tx->scene, tx->paths, tx->path, tx->first_occlusion + request);
+}
 
 #include TEXTURE_FUNCTIONS_FILE
 }  // namespace user_language
@@ -96,6 +119,10 @@ diptych_evaluate_textures(const SceneView& scene_view, const PathView& path_view
 {
     const Scene scene = scene_from(scene_view);
     const Paths paths = paths_from(path_view);
+#if VECTORISED
+    evaluated_scene = &scene_view;
+    evaluated_paths = &path_view;
+#endif
     run(scene, paths, first, count);
 }
 

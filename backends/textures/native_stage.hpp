@@ -4,6 +4,7 @@
 
 #include "backends/scene_data.hpp"
 #include "kernels_cpu/kernels.hpp"
+#include "kernels_cpu/texture_tracer.hpp"
 
 #include <memory>
 #include <string>
@@ -31,11 +32,17 @@ public:
     NativeStage& operator=(const NativeStage&) = delete;
 
     const TextureKernels& kernels() const { return kernels_; }
+    // What traces the rays of textures that do so themselves.
+    void set_tracer(decltype(TracingTextureKernels::openness) openness, const void* tracer)
+    {
+        kernels_.openness = openness;
+        kernels_.tracer = tracer;
+    }
     bool was_compiled() const { return was_compiled_; }  // else it came from the cache
 
 private:
     void* library_ = nullptr;
-    TextureKernels kernels_;
+    TracingTextureKernels kernels_;
     bool was_compiled_ = false;
 };
 

@@ -30,9 +30,10 @@ SHARED float texture_openness(const Scene* scene, const Paths* paths, int i, Tex
 {
     const int rays = scene->settings[0].occlusion_rays;
     const int object = texture_object(scene, place.instance, place.triangle);
+    const uint ray_seed = texture_ray_seed(scene, paths, i, place, number);
     int open = 0;
     for (int ray = 0; ray < rays; ++ray) {
-        const TextureRay r = texture_ray(scene, paths, i, place, number, request.hemisphere, ray);
+        const TextureRay r = texture_ray(place, ray_seed, request.hemisphere, ray);
         const uint seed = alpha_seed(scene->settings[0].seed, get_pixel(paths, i),
                                      texture_ray_sample(get_sample(paths, i), number, ray),
                                      get_depth(paths, i), 1);
@@ -45,6 +46,14 @@ SHARED float texture_openness(const Scene* scene, const Paths* paths, int i, Tex
         open += is_occluded ? 0 : 1;
     }
     return (float)open / (float)rays;
+}
+
+// The same where a texture runs that has asked, for its material's request `number`.
+SHARED float texture_openness_at(const Scene* scene, const Paths* paths, int i, int number)
+{
+    const TextureRequests requests = texture_requests(scene, texture_program_of(scene, paths, i));
+    return texture_openness(scene, paths, i, texture_place(scene, paths, i),
+                            texture_request(scene, requests.first, number), number);
 }
 
 SHARED void trace_texture_rays(const Scene* scene, const Paths* paths, int i)

@@ -51,21 +51,27 @@ typedef struct {
     float3 direction;
 } TextureRay;
 
-// Ray `ray` of a request of path i: cosine-distributed about the shading normal, or opposite to it;
-// of `both`, every second. The rays of a request are stratified among themselves.
-SHARED TextureRay texture_ray(const Scene* scene, const Paths* paths, int i, TexturePlace place,
-                              int request, int hemisphere, int ray)
+// What the rays of a request of path i have in common: the seed of their stratified sample.
+SHARED uint texture_ray_seed(const Scene* scene, const Paths* paths, int i, TexturePlace place,
+                             int request)
 {
-    const SampleKey path_key =
+    const SampleKey key =
         sample_key(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i));
     const uint bits = (uint)(get_depth(paths, i) * 64 + request);
     const uint where =  // else a surface and what it is lit by would be seen through the same rays
         paths->lookup == LOOKUP_SURFACE
             ? 0u
             : hash_pair((uint)paths->lookup, (uint)(place.triangle ^ place.instance << 16));
+    return hash_pair(hash_pair(key.seed, key.index), bits ^ where ^ 0x2545f491u);
+}
+
+// Ray `ray` of a request: cosine-distributed about the shading normal, or opposite to it; of
+// `both`, every second. The rays of a request are stratified among themselves.
+SHARED TextureRay texture_ray(TexturePlace place, uint seed, int hemisphere, int ray)
+{
     SampleKey key;
     key.index = (uint)ray;
-    key.seed = hash_pair(hash_pair(path_key.seed, path_key.index), bits ^ where ^ 0x2545f491u);
+    key.seed = seed;
     const float2 u = sample_pair(key, 0);
     const int is_lower =
         (hemisphere == HEMISPHERE_LOWER) | ((hemisphere == HEMISPHERE_BOTH) & ((ray & 1) != 0));

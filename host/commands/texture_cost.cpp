@@ -208,15 +208,13 @@ std::string cost_card(const TextureFile& file, const std::vector<std::string>& v
                         "{:>16} {:>12}\n",
                         "target", "registers", "stack bytes", "spilled bytes", "code bytes");
     SceneData scene = scene_of(file, values);
-    for (const DeviceCost& cost : device_costs(scene)) {
+    for (const DeviceCost& cost : device_costs(scene).free) {
         if (!cost.missing.empty())
             text += fmt::format("{:<8} not measured: {}\n", cost.target, cost.missing);
         else
-            text +=
-                fmt::format("{:<8} {:>12} {:>16} {:>16} {:>12}\n", cost.target, cost.registers,
-                            cost.stack_bytes,
-                            cost.target.starts_with("sm") ? std::to_string(cost.spill_bytes) : "-",
-                            cost.code_bytes > 0 ? std::to_string(cost.code_bytes) : "-");
+            text += fmt::format("{:<8} {:>12} {:>16} {:>16} {:>12}\n", cost.target, cost.registers,
+                                cost.stack_bytes, cost.spill_bytes,
+                                cost.code_bytes > 0 ? std::to_string(cost.code_bytes) : "-");
     }
     return text;
 }

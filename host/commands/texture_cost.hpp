@@ -31,11 +31,19 @@ struct DeviceCost {
     std::string target;  // sm_80, gfx900
     int registers = 0;
     int stack_bytes = 0;
-    int spill_bytes = 0;  // sm_80 only
+    int spill_bytes = 0;  // sm_80: stored; gfx900: four a spilled register of one work item
     int code_bytes = 0;   // of the stage's machine code; 0: unknown
+    double seconds = 0;   // that compilation took
     std::string missing;  // which program or library is not there; empty: measured
 };
-std::vector<DeviceCost> device_costs(const SceneData& scene);
+
+// Of the texture stage for the scene's textures, with as many registers as the compiler likes and,
+// if `most_registers` is above zero, with no more than so many.
+struct DeviceCosts {
+    std::vector<DeviceCost> free;
+    std::vector<DeviceCost> limited;
+};
+DeviceCosts device_costs(const SceneData& scene, int most_registers = 0);
 
 // All of it as text. `backends`: names with commas, or empty for all.
 std::string cost_card(const TextureFile& file, const std::vector<std::string>& values,

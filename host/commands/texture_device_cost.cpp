@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -110,36 +111,74 @@ int code_bytes(const std::string& elf)
     return int(bytes);
 }
 
-DeviceCost nvidia(const std::string& source, unsigned effects, const ScratchFolder& folder)
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// ptxas on what clang wrote to `ptx`; `limit` is its flag for registers, or empty.
+DeviceCost assembled(const std::string& assembler, const std::string& ptx, const std::string& limit,
+                     const ScratchFolder& folder)
 {
     DeviceCost cost;
     cost.target = "sm_80";
-    const std::string bitcode = library("nvptx64--nvidiacl.bc");
-    const std::string assembler = first_program({"ptxas", "/usr/local/cuda/bin/ptxas"});
-    if (clang().empty()) cost.missing = "no clang";
-    if (bitcode.empty()) cost.missing = "no libclc (Debian: libclc-14)";
-    if (assembler.empty()) cost.missing = "no ptxas (CUDA toolkit)";
-    if (!cost.missing.empty()) return cost;
-    const std::string out = folder / "kernel.ptx";
-    const Finished compiled =
-        compile(source, out, effects, bitcode,
-                {"-target", "nvptx64--nvidiacl", "-Xclang", "-target-cpu", "-Xclang", "sm_80",
-                 "-Xclang", "-target-feature", "-Xclang", "+ptx70"});
-    if (compiled.exit_code != 0) {
-        cost.missing = "clang: " + first_line(compiled.output);
-        return cost;
-    }
     const std::string cubin = folder / "kernel.cubin";
-    const Finished assembled = run_program({assembler, "-v", "-arch=sm_80", out, "-o", cubin});
-    if (assembled.exit_code != 0) {
-        cost.missing = "ptxas: " + first_line(assembled.output);
+    std::vector<std::string> command = {assembler, "-v", "-arch=sm_80", ptx, "-o", cubin};
+    if (!limit.empty()) command.push_back(limit);
+    const auto start = std::chrono::steady_clock::now();
+    const Finished done = run_program(command);
+    cost.seconds = seconds_since(start);
+    if (done.exit_code != 0) {
+        cost.missing = "ptxas: " + first_line(done.output);
         return cost;
     }
-    cost.registers = largest(assembled.output, "Used (\\d+) registers");
-    cost.stack_bytes = largest(assembled.output, "(\\d+) bytes stack frame");
-    cost.spill_bytes = largest(assembled.output, "(\\d+) bytes spill stores");
+    cost.registers = largest(done.output, "Used (\\d+) registers");
+    cost.stack_bytes = largest(done.output, "(\\d+) bytes stack frame");
+    cost.spill_bytes = largest(done.output, "(\\d+) bytes spill stores");
     cost.code_bytes = code_bytes(text_of(cubin));
     return cost;
+}
+
+void nvidia(const std::string& source, unsigned effects, int most_registers,
+            const ScratchFolder& folder, DeviceCosts& costs)
+{
+    DeviceCost missing;
+    missing.target = "sm_80";
+    const std::string bitcode = library("nvptx64--nvidiacl.bc");
+    const std::string assembler = first_program({"ptxas", "/usr/local/cuda/bin/ptxas"});
+    if (clang().empty()) missing.missing = "no clang";
+    if (bitcode.empty()) missing.missing = "no libclc (Debian: libclc-14)";
+    if (assembler.empty()) missing.missing = "no ptxas (CUDA toolkit)";
+    const std::string out = folder / "kernel.ptx";
+    const auto start = std::chrono::steady_clock::now();
+    if (missing.missing.empty()) {
+        const Finished compiled =
+            compile(source, out, effects, bitcode,
+                    {"-target", "nvptx64--nvidiacl", "-Xclang", "-target-cpu", "-Xclang", "sm_80",
+                     "-Xclang", "-target-feature", "-Xclang", "+ptx70"});
+        if (compiled.exit_code != 0) missing.missing = "clang: " + first_line(compiled.output);
+    }
+    const double seconds = seconds_since(start);
+    for (auto* list : {&costs.free, &costs.limited}) {
+        if (list == &costs.limited && most_registers <= 0) continue;
+        const std::string limit =
+            list == &costs.limited ? fmt::format("-maxrregcount={}", most_registers) : "";
+        list->push_back(missing.missing.empty() ? assembled(assembler, out, limit, folder)
+                                                : missing);
+        list->back().seconds += seconds;
+    }
+}
+
+// The kernel with no more than so many vector registers.
+std::string limited_source(const std::string& source, int registers)
+{
+    const std::string kernel = "__kernel ";
+    std::string text = source;
+    const size_t at = text.rfind(kernel);
+    if (at != std::string::npos)
+        text.insert(at + kernel.size(),
+                    fmt::format("__attribute__((amdgpu_num_vgpr({}))) ", registers));
+    return text;
 }
 
 DeviceCost amd(const std::string& source, unsigned effects, const ScratchFolder& folder)
@@ -151,8 +190,10 @@ DeviceCost amd(const std::string& source, unsigned effects, const ScratchFolder&
     if (bitcode.empty()) cost.missing = "no libclc (Debian: libclc-14)";
     if (!cost.missing.empty()) return cost;
     const std::string out = folder / "kernel.s";
+    const auto start = std::chrono::steady_clock::now();
     const Finished compiled = compile(source, out, effects, bitcode,
                                       {"-target", "amdgcn--amdhsa", "-nogpulib", "-mcpu=gfx900"});
+    cost.seconds = seconds_since(start);
     if (compiled.exit_code != 0) {
         cost.missing = "clang: " + first_line(compiled.output);
         return cost;
@@ -160,18 +201,29 @@ DeviceCost amd(const std::string& source, unsigned effects, const ScratchFolder&
     const std::string assembly = text_of(out);
     cost.registers = largest(assembly, "; NumVgprs: (\\d+)");
     cost.stack_bytes = largest(assembly, "; ScratchSize: (\\d+)");
+    cost.spill_bytes = 4 * largest(assembly, "\\.vgpr_spill_count: *(\\d+)");
     cost.code_bytes = largest(assembly, "; codeLenInByte = (\\d+)");
     return cost;
 }
 
 }  // namespace
 
-std::vector<DeviceCost> device_costs(const SceneData& scene)
+DeviceCosts device_costs(const SceneData& scene, int most_registers)
 {
     const ScratchFolder folder;
-    const std::string source = folder / "evaluate_textures.cl";
-    std::ofstream(source) << opencl_texture_program(scene, kernel_source(STAGE_evaluate_textures));
-    return {nvidia(source, scene.effects, folder), amd(source, scene.effects, folder)};
+    const std::string text = opencl_texture_program(scene, kernel_source(STAGE_evaluate_textures));
+    const auto written = [&](const char* name, const std::string& source) {
+        std::ofstream(folder / name) << source;
+        return folder / name;
+    };
+    const std::string source = written("evaluate_textures.cl", text);
+    DeviceCosts costs;
+    nvidia(source, scene.effects, most_registers, folder, costs);
+    costs.free.push_back(amd(source, scene.effects, folder));
+    if (most_registers > 0)
+        costs.limited.push_back(amd(written("limited.cl", limited_source(text, most_registers)),
+                                    scene.effects, folder));
+    return costs;
 }
 
 }  // namespace diptych
@@ -180,7 +232,7 @@ std::vector<DeviceCost> device_costs(const SceneData& scene)
 
 namespace diptych {
 
-std::vector<DeviceCost> device_costs(const SceneData&) { return {}; }
+DeviceCosts device_costs(const SceneData&, int) { return {}; }
 
 }  // namespace diptych
 

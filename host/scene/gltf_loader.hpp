@@ -4,7 +4,7 @@
 #pragma once
 
 #include "host/scene/gltf_document.hpp"
-#include "host/scene/load.hpp"
+#include "host/scene/model.hpp"
 
 namespace diptych {
 
@@ -17,6 +17,8 @@ public:
     {
     }
     void run();
+    // Its geometry alone, for read_model().
+    std::vector<ModelPlacement> run_for_model();
 
 private:
     struct NodePlacement {
@@ -75,6 +77,7 @@ private:
     std::vector<TextureNode> texture_nodes_;
     std::vector<int> mesh_numbers_;  // in the builder; -1: not placed
     std::vector<char> node_visited_;
+    bool reads_all_uvs_ = false;  // sets 0 and 1, whether or not the materials do
     size_t nodes_of_two_parents_ = 0;
     size_t points_and_lines_ = 0;
     size_t without_positions_ = 0;

@@ -68,26 +68,30 @@ bool GltfLoader::read_uv_set(const tinygltf::Primitive& primitive, size_t set,
 void GltfLoader::read_uvs(const tinygltf::Primitive& primitive, const std::string& where,
                           MeshPart& part)
 {
-    if (primitive.material < 0) {
-        return;
+    bool may_be_asked = reads_all_uvs_;
+    if (primitive.material >= 0) {
+        const MaterialInput& m = materials_[size_t(primitive.material)];
+        for (const TextureUse* use :
+             {&m.base_texture, &m.metallic_roughness_texture, &m.normal_texture,
+              &m.emission_texture, &m.specular_texture, &m.specular_color_texture}) {
+            may_be_asked |= use->node >= 0;
+            if (use->image < 0) {
+                continue;
+            }
+            if (use->uv_set > 7) {
+                throw SceneError(fmt::format("{}: its material reads TEXCOORD_{}; sets 0 to 7 can "
+                                             "be read",
+                                             where, use->uv_set));
+            }
+            if (!read_uv_set(primitive, size_t(use->uv_set), where, part)) {
+                ++missing_uv_sets_;
+            }
+        }
     }
-    const MaterialInput& m = materials_[size_t(primitive.material)];
-    for (const TextureUse* use :
-         {&m.base_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture,
-          &m.specular_texture, &m.specular_color_texture}) {
-        if (use->node >= 0) {
-            for (const size_t set : {size_t(0), size_t(1)})
-                read_uv_set(primitive, set, where, part);
+    for (const size_t set : {size_t(0), size_t(1)}) {
+        if (may_be_asked) {
+            read_uv_set(primitive, set, where, part);
         }
-        if (use->image < 0) {
-            continue;
-        }
-        if (use->uv_set > 7) {
-            throw SceneError(fmt::format("{}: its material reads TEXCOORD_{}; sets 0 to 7 can be "
-                                         "read",
-                                         where, use->uv_set));
-        }
-        if (!read_uv_set(primitive, size_t(use->uv_set), where, part)) ++missing_uv_sets_;
     }
 }
 
@@ -205,6 +209,20 @@ void GltfLoader::add_meshes()
                                      model_.meshes[size_t(placement.mesh)].name);
         }
     }
+}
+
+std::vector<ModelPlacement> GltfLoader::run_for_model()
+{
+    refuse_cycles();
+    visit_nodes();
+    add_materials();
+    reads_all_uvs_ = true;
+    std::vector<ModelPlacement> model;
+    for (const NodePlacement& placement : placements_) {
+        model.push_back({mesh_parts(placement.mesh), placement.to_world, placement.name});
+    }
+    document_.release_buffers();
+    return model;
 }
 
 void GltfLoader::tell_what_was_skipped()

@@ -2,6 +2,7 @@
 
 #include "host/scene/environment.hpp"
 #include "host/scene/gltf_loader.hpp"
+#include "host/scene/model.hpp"
 #include "host/scene/uri.hpp"
 
 #include <fmt/format.h>
@@ -43,19 +44,19 @@ void apply_options(SceneBuilder& scene, const LoadOptions& options)
     }
 }
 
-SceneData load_scene(const std::filesystem::path& file, const LoadOptions& options)
+namespace {
+
+// Runs `read` on the document, and gives errors the name of its file.
+template<typename Read>
+void read_document(const std::filesystem::path& file, bool allow_outside, const Read& read)
 {
     const std::string name = printable(file.filename().string());
     const auto fail = [&](const std::string& what) {
         throw SceneError((name.empty() ? printable(file.string()) : name) + ": " + what);
     };
-    SceneBuilder scene;
     try {
-        GltfDocument document(file, options.allow_outside);
-        for (const std::string& line : document.notices()) {
-            scene.notice(line);
-        }
-        GltfLoader(document, options, scene).run();
+        GltfDocument document(file, allow_outside);
+        read(document);
     } catch (const SceneError& error) {
         fail(error.what());
     } catch (const std::bad_alloc&) {
@@ -65,8 +66,36 @@ SceneData load_scene(const std::filesystem::path& file, const LoadOptions& optio
     } catch (const std::exception& error) {
         fail("document: " + printable(error.what()) + "; repair the file");
     }
+}
+
+}  // namespace
+
+void load_into(SceneBuilder& scene, const std::filesystem::path& file, const LoadOptions& options)
+{
+    read_document(file, options.allow_outside, [&](GltfDocument& document) {
+        for (const std::string& line : document.notices()) {
+            scene.notice(line);
+        }
+        GltfLoader(document, options, scene).run();
+    });
     apply_options(scene, options);
     scene.copy_small_meshes(options.copied_triangles);
+}
+
+std::vector<ModelPlacement> read_model(const std::filesystem::path& file)
+{
+    std::vector<ModelPlacement> model;
+    read_document(file, false, [&](GltfDocument& document) {
+        SceneBuilder unused;
+        model = GltfLoader(document, {}, unused).run_for_model();
+    });
+    return model;
+}
+
+SceneData load_scene(const std::filesystem::path& file, const LoadOptions& options)
+{
+    SceneBuilder scene;
+    load_into(scene, file, options);
     try {
         SceneData data = scene.finish();
         if (data.triangles.empty()) {
@@ -74,9 +103,9 @@ SceneData load_scene(const std::filesystem::path& file, const LoadOptions& optio
         }
         return data;
     } catch (const SceneError& error) {
-        fail(error.what());
+        const std::string name = printable(file.filename().string());
+        throw SceneError((name.empty() ? printable(file.string()) : name) + ": " + error.what());
     }
-    return {};
 }
 
 }  // namespace diptych

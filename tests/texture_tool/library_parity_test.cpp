@@ -1,7 +1,6 @@
 // The library's textures as the texture tool writes them: the same bits as scalar C++, as
 // vectorised C++ and on every OpenCL device, with the arguments that their headers name.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -193,33 +192,6 @@ TEST_P(LibraryTexture, HasTheSameBitsInVectorLanes)
     EXPECT_EQ(different(run(loops_scalar().at(GetParam()), hits, words).values,
                         run(loops_vector().at(GetParam()), hits, words).values),
               0);
-}
-
-// Seconds for all hits, the best of several times.
-double seconds(LibraryLoop loop, const Floats& hits, const Words& words)
-{
-    double best = 1.0e9;
-    for (int k = 0; k < 9; ++k) {
-        const auto start = std::chrono::steady_clock::now();
-        run(loop, hits, words);
-        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-        best = std::min(best, taken.count());
-    }
-    return best;
-}
-
-// Those that compute much; twenty times is usual, since gradients are branches to scalar code.
-TEST(LibraryLanes, AreFourTimesAsFastAsScalarCode)
-{
-    if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "needs AVX2";
-    const Floats hits = make_hits();
-    for (const char* name : {"fbm", "marble", "rust", "scratches", "wood", "worley"}) {
-        const Words words = region_of(name);
-        const double scalar = seconds(loops_scalar().at(name), hits, words);
-        const double vector = seconds(loops_vector().at(name), hits, words);
-        EXPECT_GT(scalar / vector, 4.0) << name;
-        RecordProperty(std::string(name) + "_nanoseconds", int(vector / hit_count * 1.0e9));
-    }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LibraryTexture, testing::ValuesIn([] {
