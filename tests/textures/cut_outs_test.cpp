@@ -119,7 +119,7 @@ TEST_P(CutOuts, CastTheShadowOfTheEqualImage)
 // Sheets of black with alpha 0.3 before a sky of radiance 1: of light, 0.7^n comes through.
 TEST_P(CutOuts, BlendedOnesLetTheirShareThrough)
 {
-    for (const int layers : {1, 5}) {
+    for (const int layers : {1, 3}) {
         SceneBuilder scene;
         const int n = scene.add_texture_node(
             {"veil", scene.add_texture_function(veil()), {{"alpha", {.numbers = {0.3}}}}});
@@ -155,7 +155,8 @@ TEST_P(CutOuts, MoreLayersThanTheBoundAreSolid)
     laws::look(scene, {0, 0, 3}, {0, 0, 0}, 1);
     SceneData data = laws::finish(scene, 0);
     const std::vector<float> picture = picture_of(*backend_, data, 1);
-    for (size_t k = 0; k < 16 * 16; ++k) EXPECT_EQ(picture[4 * k], k % 16 < 8 ? 1.0f : 0.0f) << k;
+    for (size_t k = 0; k < 16 * 16; ++k)
+        EXPECT_NEAR(picture[4 * k], k % 16 < 8 ? 1.0f : 0.0f, 1e-5f) << k;
     EXPECT_EQ(backend_->statistics().undecided_rays, 128u);
 }
 
