@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <map>
 #include <random>
 #include <sys/file.h>
 #include <sys/mount.h>
@@ -21,13 +22,24 @@ std::string bytes_of_file(const std::string& path)
 
 class CheckpointCommand : public testing::Test {
 protected:
-    // A small picture, by many dispatches; `more` comes last and wins.
-    Outcome render(std::vector<std::string> more, const RunOptions& options = {})
+    // A small picture, by many dispatches; of an option that comes twice the last is meant.
+    Outcome render(const std::vector<std::string>& more, const RunOptions& options = {})
     {
-        std::vector<std::string> words = {"render",    "--size",   "48x32", "--samples",
-                                          "320",       "--memory", "1M",    "--reproducible",
-                                          "--threads", "1",        "--env", "none"};
-        words.insert(words.end(), more.begin(), more.end());
+        std::vector<std::string> all = {"--size",   "48x32", "--samples",     "320",
+                                        "--memory", "1M",    "--threads",     "1",
+                                        "--env",    "none",  "--reproducible"};
+        all.insert(all.end(), more.begin(), more.end());
+        std::map<std::string, std::string> values;
+        for (size_t k = 0; k < all.size(); ++k) {
+            const bool is_alone = k + 1 == all.size() || all[k + 1][0] == '-';
+            values[all[k]] = is_alone ? "" : all[k + 1];
+            k += is_alone ? 0 : 1;
+        }
+        std::vector<std::string> words = {"render"};
+        for (const auto& [name, value] : values) {
+            words.push_back(name);
+            if (!value.empty()) words.push_back(value);
+        }
         return run_diptych(words, options);
     }
 

@@ -66,15 +66,14 @@ TEST_P(Checkpoints, GoOnTowardsAnErrorTarget)
 {
     const int width = 64, height = 48;
     SceneData scene = laws::busy_scene(width, height);
-    BackendOptions device;
-    device.memory_bytes = 1u << 20;
-    const std::unique_ptr<Backend> backend = make_backend(GetParam(), device);
+    const std::unique_ptr<Backend> backend = make_backend(GetParam(), {});
     CheckpointHead head;
     head.subject = checkpoint_subject(scene, "test 1");
     backend->upload(scene);
     RenderOptions options;
-    options.samples = 512;
-    options.error = 2;
+    options.samples = 2048;
+    options.error = 0.5;
+    options.most_items = 64;
     const RenderResult whole = render(*backend, scene, options);
     const std::vector<BlockState>& blocks = whole.schedule.blocks;
     EXPECT_TRUE(std::any_of(blocks.begin(), blocks.end(), [&](const BlockState& block) {

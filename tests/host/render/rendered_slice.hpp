@@ -23,9 +23,7 @@ struct Wanted {
 inline Checkpoint rendered(const Wanted& wanted, std::optional<RenderState> start = std::nullopt,
                            int width = 40, int height = 24)
 {
-    BackendOptions device;
-    device.memory_bytes = 1u << 20;  // many dispatches
-    const std::unique_ptr<Backend> backend = make_backend(wanted.backend, device);
+    const std::unique_ptr<Backend> backend = make_backend(wanted.backend, {});
     SceneData scene = laws::busy_scene(width, height);
     scene.settings[0].seed = wanted.seed;
     CheckpointHead head;
@@ -39,6 +37,7 @@ inline Checkpoint rendered(const Wanted& wanted, std::optional<RenderState> star
     options.first_sample = wanted.first;
     options.samples = wanted.end;
     options.stop = &stop;
+    options.most_items = 2;
     options.observe = [&](const RenderState&) { stop = ++dispatches >= wanted.dispatches; };
     RenderResult result = render(*backend, scene, options, std::move(start));
     head.slices = {slice_of(options)};
