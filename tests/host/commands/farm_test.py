@@ -152,6 +152,8 @@ def start_requeued_now(slurm):
     run = lambda *words: subprocess.run(words, env=slurm.environment, capture_output=True, text=True, check=False)
     waiting = [line.split()[0] for line in run("squeue", "--me", "-h", "-r", "-o", "%A %r").stdout.splitlines()
                if line.split()[1] == "BeginTime"]
+    if waiting:
+        time.sleep(5)  # started before the end of the first attempt has come through, the second would end with it
     for job in waiting:
         run("scontrol", "update", f"JobId={job}", "StartTime=now")
     return bool(waiting)
