@@ -63,9 +63,9 @@ SceneData corner()
     const int open_function = scene.add_texture_function(open);
     const int mixed_function = scene.add_texture_function(mixed);
     const int table_function = scene.add_texture_function(from_table());
-    Picture checks{2, 2, {}, {}, true, 0};
-    for (const int value : {220, 60, 90, 180})
-        checks.bytes.insert(checks.bytes.end(), {std::uint8_t(value), 128, 200, 255});
+    const Picture checks{
+        2,  2,    {220, 128, 200, 255, 60, 128, 200, 255, 90, 128, 200, 255, 180, 128, 200, 255},
+        {}, true, 0};
     TextureUse image;
     image.image = scene.add_image(checks);
     int materials[2];
