@@ -122,12 +122,12 @@ void add_stages(std::string& text, const SceneData& scene)
     const auto add = [&](const char* name, const char* when, unsigned needs) {
         const unsigned has = scene.effects & needs;
         if (needs == 0)
-            text += fmt::format("  {:<18}{}, always\n", name, when);
+            text += fmt::format("  {:<17} {}, always\n", name, when);
         else if (has != 0)
             text +=
-                fmt::format("  {:<18}{}, for {}\n", name, when, fmt::join(effects_in(has), ", "));
+                fmt::format("  {:<17} {}, for {}\n", name, when, fmt::join(effects_in(has), ", "));
         else
-            text += fmt::format("  {:<18}skipped: needs one of {}\n", name,
+            text += fmt::format("  {:<17} skipped: needs one of {}\n", name,
                                 fmt::join(effects_in(needs), ", "));
     };
     const std::map<std::string, const char*> when_words = {{"once", "once"},
@@ -228,6 +228,18 @@ void add_omissions(std::string& text, const SceneData& scene)
 
 }  // namespace
 
+namespace {
+
+std::string textures_with_occlusion(const SceneData& scene)
+{
+    std::vector<std::string> names;
+    for (const TextureFunction& function : scene.textures.functions)
+        if (!function.occlusion.empty()) names.push_back(function.entry);
+    return fmt::format("textures {}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
 std::string reason_for(const SceneData& scene, unsigned effect)
 {
     const Settings& settings = scene.settings.at(0);
@@ -251,6 +263,14 @@ std::string reason_for(const SceneData& scene, unsigned effect)
         });
     case EFFECT_EMISSION_TEXTURE:
         return materials_with(scene, [](const Material& m) { return m.emission_slot >= 0; });
+    case EFFECT_PROCEDURAL:
+        return materials_with(scene, [](const Material& m) {
+            return m.texture_program[PROGRAM_SURFACE] != 0 ||
+                   m.texture_program[PROGRAM_ALPHA] != 0 ||
+                   m.texture_program[PROGRAM_EMISSION] != 0;
+        });
+    case EFFECT_TEXTURE_OCCLUSION:
+        return textures_with_occlusion(scene);
     case EFFECT_PROCEDURAL_EMISSION:
         return materials_with(
             scene, [](const Material& m) { return m.texture_program[PROGRAM_EMISSION] != 0; });

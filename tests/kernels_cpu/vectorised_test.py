@@ -74,4 +74,4 @@ def main(path):
     return int(failed > 0)
 
 
-sys.exit(main(sys.argv[1]))
+sys.exit(main(next(path for path in sys.argv[1].split(";") if "/stages.cpp" in path)))

@@ -133,7 +133,8 @@ TEST(TextureArm, TX_8_PastesTheValuesAndKeepsTheStageBeforeOut)
     SceneData scene = corner();
     make_texture_arm(scene, {true, true});
     EXPECT_FALSE(scene.effects & EFFECT_TEXTURE_OCCLUSION);
-    EXPECT_EQ(scene.textures.functions.size(), 4u) << "two results of two materials";
+    EXPECT_EQ(scene.textures.functions.size(), 6u)
+        << "two results of two materials, and the light of each as a lamp";
     for (const TextureFunction& function : scene.textures.functions) {
         EXPECT_TRUE(function.arguments.empty());
         EXPECT_EQ(function.opencl.find("tx_argument_float(tx, region, 0)",

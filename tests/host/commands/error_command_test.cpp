@@ -14,15 +14,15 @@ using namespace diptych;
 TEST(ErrorCommand, EndsByItselfSaysHowSureItIsAndShowsWhere)
 {
     const TestFolder folder;
-    const Outcome outcome = run_diptych({"render", "--size", "96x64", "--error", "6", "--audit",
+    const Outcome outcome = run_diptych({"render", "--size", "96x64", "--error", "2.5", "--audit",
                                          "--json", "-", "-o", folder / "out.exr"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
     EXPECT_NE(outcome.err.find("ended: the target is reached"), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find("asked for 6 JND, predicted"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("asked for 2.5 JND, predicted"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("audit: "), std::string::npos) << outcome.err;
     const auto report = nlohmann::json::parse(outcome.out);
     EXPECT_EQ(report["error"]["unfinished_blocks"], 0);
-    EXPECT_LE(report["error"]["block_p95"].get<double>(), 6);
+    EXPECT_LE(report["error"]["block_p95"].get<double>(), 2.5);
     // found by other samples: not far from what the film's own say
     EXPECT_LT(report["audit"]["rms_low"].get<double>(), 2 * report["error"]["rms"].get<double>());
     EXPECT_GT(report["audit"]["rms_high"].get<double>(),

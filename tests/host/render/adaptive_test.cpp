@@ -73,7 +73,7 @@ TEST(Adaptive, GoesOnFromAnyDispatchToTheSamePicture)
         std::vector<RenderState> states;
         int calls = 0;
         options.observe = [&](const RenderState& state) {
-            if (++calls % 29 == 0) states.push_back(state);
+            if (++calls % 7 == 0) states.push_back(state);
         };
         const Picture whole = picture_of(render(*backend, scene, options));
         options.observe = nullptr;

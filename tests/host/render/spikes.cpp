@@ -15,7 +15,7 @@ using namespace diptych;
 constexpr int width = 64, height = 48;
 constexpr int most_samples = 4096;     // by the rule by pixels, as where it was first measured
 constexpr int enough_samples = 65536;  // so many that the error alone ends a block
-constexpr double target = 2;           // JND
+constexpr double target = 1;           // JND
 
 // How many of n samples are spikes: an inverted binomial distribution.
 int spikes_of(double p, int n, uint key)

@@ -17,7 +17,7 @@ struct Outcome {
     double samples = 0;  // a pixel's, on average
 };
 
-// A picture of such pixels, rendered until its predicted error is 2 JND, however long that takes.
+// A picture of such pixels, rendered until its predicted error is 1 JND, however long that takes.
 Outcome render_to_error(const Pixel& pixel, unsigned seed, bool is_unbiased = false);
 
 // The same by the rule that is common: each pixel ends when two halves of its samples agree, and
