@@ -30,7 +30,7 @@ int main()
 {
     const spikes::Pixel pixels[] = {{0.15f, 0.6f, 0.05}, {0.15f, 6, 0.005}, {0.15f, 60, 0.0005}};
     for (const spikes::Pixel& pixel : pixels) {
-        print_row("blocks, --error 2", pixel, false);
+        print_row("blocks, --error 1", pixel, false);
         print_row("pixel by pixel, Cycles at 0.01", pixel, true);
     }
     return 0;
