@@ -7,13 +7,30 @@
 #include <cstring>
 #include <iterator>
 #include <map>
-#include <regex>
 #include <stdexcept>
 
 namespace diptych {
 namespace {
 
 constexpr size_t most_pasted = 4096;  // nodes of a program, children as often as they are read
+
+// `expression` with `value` wherever it reads argument `a`, which has that type.
+std::string with_argument(std::string expression, const std::string& type, size_t a,
+                          const std::string& value)
+{
+    const std::string rest = ", region, " + std::to_string(a) + ")";
+    for (const std::string& call : {"tx_argument_" + type + "(", "tx_argument_view_" + type + "("})
+        for (size_t at = 0; (at = expression.find(call, at)) != std::string::npos;) {
+            const size_t comma = std::min(expression.find(',', at), expression.size());
+            if (expression.compare(comma, rest.size(), rest) == 0) {
+                expression.replace(at, comma + rest.size() - at, value);
+                at += value.size();
+            } else {
+                at += call.size();
+            }
+        }
+    return expression;
+}
 
 // The words behind the materials, as material_word() reads them.
 class Words {
@@ -171,10 +188,8 @@ private:
             const TextureArgument& argument = function.arguments[a];
             const std::string own = std::string("n") + std::to_string(a);
             if (words_.at(descriptor(step, a)) >= 0) parameters += ", float4 " + own;
-            const std::regex read("tx_argument_(view_)?" + argument.type + R"(\(\s*\w+, region, )" +
-                                  std::to_string(a) + R"(\))");
-            expression = std::regex_replace(expression, read,
-                                            value_of(step, a, name + "_" + own, own, tables));
+            expression = with_argument(expression, argument.type, a,
+                                       value_of(step, a, name + "_" + own, own, tables));
         }
         return tables + "SHARED float4 " + name + "(TextureContext* tx" + parameters +
                ")\n{\n    TextureContext* tx_context = tx;\n"
