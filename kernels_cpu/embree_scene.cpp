@@ -58,6 +58,28 @@ void leave_record(const Views& views, int i, int instance, int triangle, float d
 // one by one (a tenth on an interior); sixteen, on AVX-512, are not.
 constexpr bool packets_of_scattered_rays = width == 16;
 
+// Of ray i of the planes, of n entries each, between two distances.
+RTCRayHit query_of(const float* origin, const float* direction, int n, int i, float nearest,
+                   float farthest)
+{
+    RTCRayHit query;
+    query.ray.org_x = origin[i];
+    query.ray.org_y = origin[n + i];
+    query.ray.org_z = origin[2 * n + i];
+    query.ray.tnear = nearest;
+    query.ray.dir_x = direction[i];
+    query.ray.dir_y = direction[n + i];
+    query.ray.dir_z = direction[2 * n + i];
+    query.ray.time = 0.0f;
+    query.ray.tfar = farthest;
+    query.ray.mask = ~0u;
+    query.ray.id = 0;
+    query.ray.flags = 0;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
 // One query a living path, in `context`, for rays that have nothing in common. Returns their
 // number.
 int intersect_singly(RTCScene scene, PacketContext& context, const Views& views, int count)
@@ -67,26 +89,13 @@ int intersect_singly(RTCScene scene, PacketContext& context, const Views& views,
     int rays = 0;
     for (int i = 0; i < count; ++i) {
         if (!is_waiting(paths, i)) continue;
-        RTCRayHit query;
-        query.ray.tnear = begin_lane(context, paths, 0, i, true);
+        const float nearest = begin_lane(context, paths, 0, i, true);
         paths.hit_instance[i] = 0;
         paths.hit_triangle[i] = -1;
         if (context.leaves_records) leave_record(views, i, 0, -1, 0);
         if (paths.depth[i] < 0) continue;
         ++rays;
-        query.ray.org_x = paths.ray_origin[i];
-        query.ray.org_y = paths.ray_origin[n + i];
-        query.ray.org_z = paths.ray_origin[2 * n + i];
-        query.ray.dir_x = paths.ray_direction[i];
-        query.ray.dir_y = paths.ray_direction[n + i];
-        query.ray.dir_z = paths.ray_direction[2 * n + i];
-        query.ray.tfar = far_away;
-        query.ray.time = 0.0f;
-        query.ray.mask = ~0u;
-        query.ray.id = 0;
-        query.ray.flags = 0;
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        RTCRayHit query = query_of(paths.ray_origin, paths.ray_direction, n, i, nearest, far_away);
         rtcIntersect1(scene, &context.embree, &query);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
         const int instance = instance_of(query.hit.instID[0]);
@@ -289,21 +298,9 @@ void EmbreeScene::find_asked(const SceneView& scene_view, const PathView& path_v
     const int n = paths.capacity;
     for (int k = 0; k < count; ++k) {
         const int i = list[k];
-        RTCRayHit query;
-        query.ray.tnear = begin_lane(context, paths, 0, i, true);
-        query.ray.org_x = paths.shadow_origin[i];
-        query.ray.org_y = paths.shadow_origin[n + i];
-        query.ray.org_z = paths.shadow_origin[2 * n + i];
-        query.ray.dir_x = paths.shadow_direction[i];
-        query.ray.dir_y = paths.shadow_direction[n + i];
-        query.ray.dir_z = paths.shadow_direction[2 * n + i];
-        query.ray.tfar = paths.shadow_distance[i];
-        query.ray.time = 0.0f;
-        query.ray.mask = ~0u;
-        query.ray.id = 0;
-        query.ray.flags = 0;
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        const float nearest = begin_lane(context, paths, 0, i, true);
+        RTCRayHit query = query_of(paths.shadow_origin, paths.shadow_direction, n, i, nearest,
+                                   paths.shadow_distance[i]);
         rtcIntersect1(implementation_->top, &context.embree, &query);
         const bool is_hit = query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
         const int instance = is_hit ? instance_of(query.hit.instID[0]) : 0;

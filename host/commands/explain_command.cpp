@@ -226,10 +226,6 @@ void add_omissions(std::string& text, const SceneData& scene)
     for (const std::string& line : scene.notices) text += "  " + line + "\n";
 }
 
-}  // namespace
-
-namespace {
-
 std::string textures_with_occlusion(const SceneData& scene)
 {
     std::vector<std::string> names;
