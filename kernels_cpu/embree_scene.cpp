@@ -58,6 +58,19 @@ void leave_record(const Views& views, int i, int instance, int triangle, float d
 // one by one (a tenth on an interior); sixteen, on AVX-512, are not.
 constexpr bool packets_of_scattered_rays = width == 16;
 
+// purpose: as of alpha_seed().
+PacketContext context_of(const Views& views, const std::vector<int>& first_triangle,
+                         RTCIntersectContextFlags flags, int purpose)
+{
+    PacketContext context;
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags = flags;
+    context.views = &views;
+    context.first_triangle = first_triangle.data();
+    context.purpose = purpose;
+    return context;
+}
+
 // Of ray i of the planes, of n entries each, between two distances.
 RTCRayHit query_of(const float* origin, const float* direction, int n, int i, float nearest,
                    float farthest)
@@ -226,13 +239,10 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context;
-    rtcInitIntersectContext(&context.embree);
-    context.embree.flags =
-        is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    context.views = &views;
-    context.first_triangle = implementation_->first_triangle.data();
-    context.purpose = 0;
+    PacketContext context = context_of(views, implementation_->first_triangle,
+                                       is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                   : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT,
+                                       0);
     context.leaves_records = has_records(views);
     if (!is_coherent && !packets_of_scattered_rays)
         return intersect_singly(implementation_->top, context, views, count);
@@ -288,12 +298,8 @@ void EmbreeScene::find_asked(const SceneView& scene_view, const PathView& path_v
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context;
-    rtcInitIntersectContext(&context.embree);
-    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    context.views = &views;
-    context.first_triangle = implementation_->first_triangle.data();
-    context.purpose = 1;
+    PacketContext context = context_of(views, implementation_->first_triangle,
+                                       RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, 1);
     context.leaves_records = context.seeks_asked = true;
     const int n = paths.capacity;
     for (int k = 0; k < count; ++k) {
@@ -314,12 +320,8 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context;
-    rtcInitIntersectContext(&context.embree);
-    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    context.views = &views;
-    context.first_triangle = implementation_->first_triangle.data();
-    context.purpose = 1;
+    PacketContext context = context_of(views, implementation_->first_triangle,
+                                       RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, 1);
     context.leaves_records = has_records(views);
     std::vector<int> asked;
     if (context.leaves_records && paths.lookup != LOOKUP_SURFACE) {
@@ -381,12 +383,8 @@ void EmbreeScene::occlusion_of_neighbours(const SceneView& scene_view, const Pat
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context;
-    rtcInitIntersectContext(&context.embree);
-    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    context.views = &views;
-    context.first_triangle = implementation_->first_triangle.data();
-    context.purpose = 1;
+    PacketContext context =
+        context_of(views, implementation_->first_triangle, RTC_INTERSECT_CONTEXT_FLAG_COHERENT, 1);
     alignas(64) int valid[width];
     alignas(64) Rays packet;
     for (int k = 0; k < width; ++k) {
