@@ -49,7 +49,7 @@ typedef struct {
     int occlusion_rays;     // of each request that a texture makes, a path
     float time;             // seconds, for textures that ask
     int samples;            // a pixel's
-    int reserved;
+    int object_frames;      // word of the materials' buffer: see object_position; -1: not asked for
 } Settings;
 
 #define MOST_ENVIRONMENT_CELLS 1024  // in a row or a column: ten halvings find one

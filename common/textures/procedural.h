@@ -130,8 +130,9 @@ SHARED TextureContext texture_context(const Scene* scene, const Paths* paths, in
     tx.normal = place.normal * sign;
     tx.view_direction = -get_ray_direction(paths, i);
     tx.local_position = place.position;
-    if (uses(scene, EFFECT_INSTANCES) && (asked & ATTRIBUTE_LocalPos) != 0u)
-        tx.local_position = point_to_object(scene, place.instance, place.position);
+    if ((asked & ATTRIBUTE_LocalPos) != 0u)
+        tx.local_position = object_position(
+            scene, texture_object(scene, place.instance, place.triangle), place.position);
     tx.tangent = zero;
     tx.bitangent = zero;
     if ((asked & (ATTRIBUTE_Tangent | ATTRIBUTE_Bitangent)) != 0u) {

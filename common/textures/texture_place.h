@@ -4,22 +4,6 @@
 
 #include "common/surface.h"
 
-SHARED float3 point_to_object(const Scene* scene, int instance, float3 p)
-{
-    return make_float3(scene->instances[instance].to_object_x.x * p.x +
-                           scene->instances[instance].to_object_x.y * p.y +
-                           scene->instances[instance].to_object_x.z * p.z +
-                           scene->instances[instance].to_object_x.w,
-                       scene->instances[instance].to_object_y.x * p.x +
-                           scene->instances[instance].to_object_y.y * p.y +
-                           scene->instances[instance].to_object_y.z * p.z +
-                           scene->instances[instance].to_object_y.w,
-                       scene->instances[instance].to_object_z.x * p.x +
-                           scene->instances[instance].to_object_z.y * p.y +
-                           scene->instances[instance].to_object_z.z * p.z +
-                           scene->instances[instance].to_object_z.w);
-}
-
 // Texture coordinates of a stored set; (0, 0) where the scene has none.
 SHARED float2 surface_uv_of_set(const Scene* scene, int triangle, float2 weights, int set)
 {
@@ -110,4 +94,28 @@ SHARED int texture_object(const Scene* scene, int instance, int triangle)
     const int merged = scene->triangle_objects[triangle & is_merged];
     const int placed = scene->instances[instance].object;
     return placed ^ ((placed ^ merged) & is_merged);
+}
+
+#define OBJECT_FRAME_WORDS 12
+
+// A point of the world in the object's own space. Meshes that appear once lie in world space, so
+// that the frames of all objects are kept with the textures that ask for them: three rows each of
+// world-to-object.
+SHARED float3 object_position(const Scene* scene, int object, float3 p)
+{
+    const int word = scene->settings[0].object_frames + OBJECT_FRAME_WORDS * object;
+    float3 at;
+    at.x = as_float(material_word(scene, word)) * p.x +
+           as_float(material_word(scene, word + 1)) * p.y +
+           as_float(material_word(scene, word + 2)) * p.z +
+           as_float(material_word(scene, word + 3));
+    at.y = as_float(material_word(scene, word + 4)) * p.x +
+           as_float(material_word(scene, word + 5)) * p.y +
+           as_float(material_word(scene, word + 6)) * p.z +
+           as_float(material_word(scene, word + 7));
+    at.z = as_float(material_word(scene, word + 8)) * p.x +
+           as_float(material_word(scene, word + 9)) * p.y +
+           as_float(material_word(scene, word + 10)) * p.z +
+           as_float(material_word(scene, word + 11));
+    return at;
 }

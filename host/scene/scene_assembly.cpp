@@ -161,13 +161,10 @@ const TextureUse* SceneAssembly::normal_texture(const MeshPart& part) const
     return (use.image >= 0 || use.node >= 0) && !material.is_unlit ? &use : nullptr;
 }
 
-// Whether a mesh's vertices are kept in world space. Not where a texture asks for positions in the
-// mesh's own.
+// Whether a mesh's vertices are kept in world space.
 bool SceneAssembly::is_merged(const SceneBuilder::Placement& placement) const
 {
-    const bool keeps_own = (attributes_ & ATTRIBUTE_LocalPos) != 0;
-    return placement_counts_[size_t(placement.mesh)] == 1 &&
-           (!keeps_own || placement.to_world.is_identity());
+    return placement_counts_[size_t(placement.mesh)] == 1;
 }
 
 void SceneAssembly::tell_what_was_repaired()

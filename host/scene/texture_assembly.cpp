@@ -131,6 +131,18 @@ public:
                                 : 0.1 * double(assembly.data_.settings[0].scene_radius);
     }
 
+    // The frames of all placements, for textures that ask for positions in an object's own space.
+    int add_object_frames()
+    {
+        const int first = pages_.begin();
+        for (const SceneBuilder::Placement& placement : assembly_.builder_.placements_) {
+            const Transform to_object = inverse(placement.to_world);
+            for (const auto& row : to_object.row)
+                for (const double value : row) pages_.add(value);
+        }
+        return first;
+    }
+
     // The program `which` (PROGRAM_*) of a material. `roots`: the nodes that it is for; `outputs`:
     // of a node, a mask over the results that other stages read.
     void add_material(size_t m, int which, const std::vector<int>& roots,
@@ -269,6 +281,7 @@ void SceneAssembly::assemble_textures()
     settings.texture_uv_set[1] = uv_slots_[1];
     settings.occlusion_rays = std::clamp(builder_.texture_settings_.occlusion_rays, 1, 256);
     settings.time = float(builder_.texture_settings_.time);
+    settings.object_frames = -1;
     textures.first_page = int(data_.materials.size());
     if (std::ranges::find(node_used_, 1) == node_used_.end()) return;
 
@@ -277,6 +290,7 @@ void SceneAssembly::assemble_textures()
     for (const TextureNode& node : builder_.texture_nodes_)
         textures.nodes.push_back({node.name, node.function, node.values});
     TexturePages pages(*this);
+    if ((attributes_ & ATTRIBUTE_LocalPos) != 0) settings.object_frames = pages.add_object_frames();
     for (size_t m = 0; m < builder_.materials_.size(); ++m) {
         if (!is_used(int(m))) continue;
         const Material& material = data_.materials[m];

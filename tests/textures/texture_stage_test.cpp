@@ -88,6 +88,35 @@ TEST_P(Textures, TX_5_OneCopyOfCodeHasARegionForEachUse)
     EXPECT_TRUE(laws::obeys(measure(data), 0.5));
 }
 
+// A mesh placed once lies in world space, one placed twice in its own: what a texture reads there
+// is the same.
+TEST_P(Textures, LocalPosIsThatOfTheMeshHoweverItIsPlaced)
+{
+    const Transform turned =
+        translation(3, -2, 5) * rotation_about({0, 1, 0}, 0.5 * std::numbers::pi);
+    for (const bool is_instance : {false, true}) {
+        SceneBuilder scene;
+        const int function = scene.add_texture_function(
+            handwritten("t0", {},
+                        "    const float3 p = tx_attribute_LocalPos(tx);\n"
+                        "    const float x = p.x + 0.5f * p.y + 0.25f * p.z;\n"
+                        "    return TX_NEW(float4, x, x, x, 1.0f);",
+                        ATTRIBUTE_LocalPos));
+        const int n = scene.add_texture_node({"place", function, {}});
+        const int m = scene.add_material({.specular = 0, .base_texture = node(n)});
+        const int mesh =
+            scene.add_mesh(quad_mesh({0.2, 0.4, 0.8}, {0.001, 0, 0}, {0, 0.001, 0}, m));
+        scene.place(mesh, turned);
+        if (is_instance) scene.place(mesh, translation(0, 40, 0));
+        scene.set_environment(laws::environment_of([](const Vec3&) { return 1.0; }));
+        const Vec3 middle = turned.point({0.2005, 0.4005, 0.8});
+        laws::look(scene, middle + turned.vector({0, 0, 2}), middle, 1e-4);
+        const SceneData data = laws::finish(scene);
+        EXPECT_EQ((data.effects & EFFECT_INSTANCES) != 0, is_instance);
+        EXPECT_TRUE(laws::obeys(measure(data), 0.2005 + 0.20025 + 0.2)) << is_instance;
+    }
+}
+
 TEST_P(Textures, TX_7_NodesReadOtherNodes)
 {
     SceneBuilder scene;
