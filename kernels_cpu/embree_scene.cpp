@@ -383,8 +383,8 @@ void EmbreeScene::occlusion_of_neighbours(const SceneView& scene_view, const Pat
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context =
-        context_of(views, implementation_->first_triangle, RTC_INTERSECT_CONTEXT_FLAG_COHERENT, 1);
+    PacketContext context = context_of(views, implementation_->first_triangle,
+                                       RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, 1);
     alignas(64) int valid[width];
     alignas(64) Rays packet;
     for (int k = 0; k < width; ++k) {
