@@ -1,6 +1,7 @@
 #include "host/commands/merge_command.hpp"
 
 #include "host/commands/picture_flags.hpp"
+#include "host/commands/progress_pictures.hpp"
 #include "host/render/checkpoint_merge.hpp"
 #include "host/render/safe_file.hpp"
 
@@ -41,9 +42,9 @@ void tell_what_is_missing(const std::vector<Slice>& slices)
     }
 }
 
-image::Picture picture_of(const Checkpoint& checkpoint)
+image::Picture picture_of(const Checkpoint& checkpoint, const Viewer& viewer)
 {
-    image::Picture picture = checkpoint.film.picture();
+    image::Picture picture = picture_of(checkpoint.film, viewer);
     picture.metadata["program"] = checkpoint.head.subject.program;
     picture.metadata["scene_sha256"] = checkpoint.head.subject.scene;
     picture.metadata["backend"] = fmt::format("{}", fmt::join(checkpoint.head.backends, ", "));
@@ -111,7 +112,7 @@ int run_merge_command(const MergeCommand& command)
     }
     for (const std::string& path : command.outputs) {
         if (image::is_picture_name(path))
-            image::write_picture(path, picture_of(all), write);
+            image::write_picture(path, picture_of(all, {write.exposure, write.view}), write);
         else
             write_as_checkpoint(path, all);
         if (!command.is_quiet) fmt::print(stderr, "wrote {}\n", path);

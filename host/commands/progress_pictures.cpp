@@ -17,12 +17,11 @@ std::string address_of(const std::string& text)
 
 }  // namespace
 
-image::Picture picture_of(const Film& film, const RenderOptions& options)
+image::Picture picture_of(const Film& film, const Viewer& viewer)
 {
     image::Picture picture = film.picture();
-    if (film.has_standard_error() && !options.pixel)
-        picture.layers.push_back(
-            image::predicted_error_layer(predicted_error(film, options.viewer)));
+    if (film.has_standard_error() && film.data().window.pixels() > 1)
+        picture.layers.push_back(image::predicted_error_layer(predicted_error(film, viewer)));
     return picture;
 }
 
@@ -48,7 +47,7 @@ void ProgressPictures::look_at(const Film& film)
     if (viewer_ && now - last_sent_ >= std::chrono::seconds(1)) send(film);
     if (interval_ <= 0 || std::chrono::duration<double>(now - last_written_).count() < interval_)
         return;
-    const image::Picture picture = picture_of(film, options_);
+    const image::Picture picture = picture_of(film, options_.viewer);
     for (const std::string& path : command_.outputs) image::write_picture(path, picture, write_);
     last_written_ = Clock::now();
 }

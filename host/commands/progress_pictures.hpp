@@ -10,7 +10,7 @@
 namespace diptych {
 
 // What is written: the film's layers, and where its error is known, how visible it is.
-image::Picture picture_of(const Film& film, const RenderOptions& options);
+image::Picture picture_of(const Film& film, const Viewer& viewer);
 
 class ProgressPictures {
 public:

@@ -242,7 +242,8 @@ int run_render_command(const RenderCommand& command)
     }
 
     image::Picture picture;
-    if (!run.outputs.empty() || !run.json.empty()) picture = picture_of(result.film, options);
+    if (!run.outputs.empty() || !run.json.empty())
+        picture = picture_of(result.film, options.viewer);
     if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
     for (const std::string& path : run.outputs) image::write_picture(path, picture, write);
     if (options.pixel) print_pixel(result.film, *options.pixel);

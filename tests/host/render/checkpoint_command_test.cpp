@@ -135,6 +135,9 @@ TEST_F(CheckpointCommand, SlicesMergeToThePictureOfOneRender)
     const Outcome compared =
         run_diptych({"compare", expected, merged, "--metric", "max", "--max", "0"});
     EXPECT_EQ(compared.exit_code, 0) << compared.text();
+    const Outcome errors = run_diptych({"compare", expected, merged, "--layer", "predicted_error",
+                                        "--metric", "max", "--max", "0"});
+    EXPECT_EQ(errors.exit_code, 0) << errors.text();
 
     // and goes on as one
     const Outcome more = render({"--samples", "400", "--checkpoint", folder_ / "all.checkpoint",
