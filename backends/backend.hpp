@@ -55,6 +55,13 @@ struct Plan {
     size_t structure_bytes = 0;  // acceleration structure, estimated where a library builds it
 };
 
+// What one of several devices has rendered.
+struct DeviceShare {
+    std::string device;  // its description
+    unsigned long long paths = 0;
+    bool is_dropped = false;
+};
+
 // Counted and timed since upload().
 struct Statistics {
     std::map<std::string, double> stage_seconds;  // summed over threads
@@ -63,11 +70,14 @@ struct Statistics {
     unsigned long long shadow_rays = 0;
     unsigned long long undecided_rays = 0;  // see most_alpha_layers
     unsigned long long paths = 0;
+    std::vector<DeviceShare> shares = {};  // where there are several devices
 };
 
 struct BackendOptions {
-    std::string device;  // index or part of the name; empty: the first that works
-    int threads = 0;     // 0: as many as the machine has
+    // OpenCL: index or part of the name; empty: the first that works. Or a list, see
+    // backends/device_list.hpp; --memory is then each device's.
+    std::string device;
+    int threads = 0;  // 0: as many as the machine has
     size_t memory_bytes = 512u << 20;
     double launch_milliseconds = 200;
     bool fast_math = false;       // opencl: allow contraction and native functions
@@ -114,8 +124,8 @@ inline constexpr const char* stage_names[] = {
 #undef STAGE_NAME
 };
 
-// Names: cpu, opencl, twin, double. Throws std::runtime_error for others, or when the device cannot
-// be used.
+// Names: cpu, opencl, twin, double; a list of devices is a backend whatever the name. Throws
+// std::runtime_error for others, or when the device cannot be used.
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);
 
 }  // namespace diptych

@@ -1,5 +1,6 @@
 #include "backends/backend.hpp"
 #include "backends/cpu_backend.hpp"
+#include "backends/device_list.hpp"
 #include "backends/opencl_backend.hpp"
 
 #include <stdexcept>
@@ -8,6 +9,7 @@ namespace diptych {
 
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options)
 {
+    if (is_device_list(options.device)) return make_devices(options);
     if (name == "cpu") return make_cpu_backend(vector_kernels(), options);
     if (name == "twin")
         return make_cpu_backend(options.debug_kernels ? kernels_debug::set : kernels_scalar::set,

@@ -97,6 +97,38 @@ void Device::read(cl_device_info what, size_t bytes, void* value) const
     check(clGetDeviceInfo(id_, what, bytes, value, nullptr), "clGetDeviceInfo", name());
 }
 
+int Device::most_parts() const
+{
+    size_t bytes = 0;
+    check(clGetDeviceInfo(id_, CL_DEVICE_PARTITION_PROPERTIES, 0, nullptr, &bytes),
+          "clGetDeviceInfo", name());
+    std::vector<cl_device_partition_property> kinds(bytes / sizeof(cl_device_partition_property));
+    read(CL_DEVICE_PARTITION_PROPERTIES, bytes, kinds.data());
+    const bool is_divisible =
+        std::find(kinds.begin(), kinds.end(), CL_DEVICE_PARTITION_EQUALLY) != kinds.end();
+    const cl_uint most = std::min(number<cl_uint>(CL_DEVICE_PARTITION_MAX_SUB_DEVICES),
+                                  number<cl_uint>(CL_DEVICE_MAX_COMPUTE_UNITS));
+    return is_divisible && most > 1 ? int(most) : 0;
+}
+
+std::vector<Device> Device::divided(int parts) const
+{
+    const cl_uint units = number<cl_uint>(CL_DEVICE_MAX_COMPUTE_UNITS) / cl_uint(parts);
+    const cl_device_partition_property how[] = {CL_DEVICE_PARTITION_EQUALLY,
+                                                cl_device_partition_property(units), 0};
+    cl_uint count = 0;
+    check(clCreateSubDevices(id_, how, 0, nullptr, &count), "clCreateSubDevices", name());
+    std::vector<cl_device_id> ids(count);
+    check(clCreateSubDevices(id_, how, count, ids.data(), nullptr), "clCreateSubDevices", name());
+    std::vector<Device> devices;
+    for (cl_device_id id : ids) {
+        devices.emplace_back(platform_, id);
+        devices.back().part_ = std::make_shared<Handle<cl_device_id, clReleaseDevice>>(id);
+    }
+    if (devices.size() > size_t(parts)) devices.resize(size_t(parts));  // what is over stays idle
+    return devices;
+}
+
 std::vector<Device> all_devices()
 {
     cl_uint count = 0;

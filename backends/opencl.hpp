@@ -6,6 +6,7 @@
 #include <CL/cl.h>
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,7 +40,8 @@ private:
     Object object_ = nullptr;
 };
 
-// A device of one of the platforms; these live as long as the process.
+// A device of one of the platforms, which live as long as the process, or a part of one, which
+// lives as long as the values that name it.
 class Device {
 public:
     Device() = default;
@@ -55,6 +57,10 @@ public:
         return value;
     }
     std::string name() const { return text(CL_DEVICE_NAME); }
+    // Equal parts, as many as are asked for. Throws where the device cannot be divided so.
+    std::vector<Device> divided(int parts) const;
+    // Into how many parts it can be divided at most; 0: it cannot.
+    int most_parts() const;
     cl_device_id id() const { return id_; }
     cl_platform_id platform() const { return platform_; }
 
@@ -63,6 +69,7 @@ private:
 
     cl_platform_id platform_ = nullptr;
     cl_device_id id_ = nullptr;
+    std::shared_ptr<Handle<cl_device_id, clReleaseDevice>> part_;  // what is to be released
 };
 
 // Of all platforms, in the loader's order; empty where no platform is installed.

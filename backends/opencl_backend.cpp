@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
@@ -41,7 +42,7 @@ struct StageKernel {
 
 class OpenclBackend final : public Backend {
 public:
-    explicit OpenclBackend(const BackendOptions& options);
+    OpenclBackend(const BackendOptions& options, const DeviceInfo& device);
 
     std::string description() const override;
     Plan plan(const SceneData& scene) const override;
@@ -86,6 +87,8 @@ private:
     opencl::Context context_;
     opencl::Queue queue_;
     ProgramCache cache_;
+    int fails_at_ = 0;
+    int dispatches_ = 0;
 
     unsigned effects_ = 0;
     std::vector<opencl::Buffer> scene_;
@@ -144,16 +147,24 @@ int scene_row(const char* wanted)
 
 constexpr int sentinel = int(0xcdcdcdcd);  // trace(): marks what no stage has written
 
-OpenclBackend::OpenclBackend(const BackendOptions& options)
-    : options_(options), device_(pick_opencl_device(options.device)), context_(device_.device),
-      queue_(context_.queue()), cache_(ProgramCache::default_folder())
+// DIPTYCH_FAIL_AT: the dispatch, counted from 1, at which every OpenCL device is to fail; what
+// becomes of a render then can be tried on any device.
+int planned_failure()
+{
+    const char* text = std::getenv("DIPTYCH_FAIL_AT");
+    return text ? std::atoi(text) : 0;
+}
+
+OpenclBackend::OpenclBackend(const BackendOptions& options, const DeviceInfo& device)
+    : options_(options), device_(device), context_(device_.device), queue_(context_.queue()),
+      cache_(ProgramCache::default_folder()), fails_at_(planned_failure())
 {
 }
 
 std::string OpenclBackend::description() const
 {
-    std::string text =
-        "opencl (" + device_.name + ", " + device_.platform + ", driver " + device_.driver;
+    std::string text = "opencl (" + device_.name + device_.part + ", " + device_.platform +
+                       ", driver " + device_.driver;
     if (!device_.is_exact) text += "; division and square root are not exact on this device";
     if (options_.fast_math) text += "; fast math";
     if (!cache_.notice().empty()) text += "; " + cache_.notice();
@@ -236,6 +247,8 @@ void OpenclBackend::bind_buffers(StageKernel& stage)
 
 void OpenclBackend::begin(const Dispatch& dispatch)
 {
+    if (++dispatches_ == fails_at_)
+        throw std::runtime_error("opencl: fails, as DIPTYCH_FAIL_AT asks");
     paths_ = dispatch.paths();
     results_ = dispatch.results();
     if (paths_ > memory_.paths || results_ > memory_.results ||
@@ -482,7 +495,13 @@ void OpenclBackend::trace(const Dispatch& dispatch,
 
 std::unique_ptr<Backend> make_opencl_backend(const BackendOptions& options)
 {
-    return std::make_unique<OpenclBackend>(options);
+    return make_opencl_backend(options, pick_opencl_device(options.device));
+}
+
+std::unique_ptr<Backend> make_opencl_backend(const BackendOptions& options,
+                                             const DeviceInfo& device)
+{
+    return std::make_unique<OpenclBackend>(options, device);
 }
 
 }  // namespace diptych

@@ -78,6 +78,7 @@ DeviceInfo describe(const opencl::Device& device, int index)
     info.memory_bytes = size_t(device.number<cl_ulong>(CL_DEVICE_GLOBAL_MEM_SIZE));
     info.largest_allocation = largest_allocation(device);
     info.group_size = group_size(device);
+    info.most_parts = device.most_parts();
     info.is_cpu = (device.number<cl_device_type>(CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
     info.why_not = why_unusable(device);
     info.is_usable = info.why_not.empty();
@@ -151,6 +152,23 @@ DeviceInfo pick_opencl_device(const std::string& choice)
                                  "; choose another with --device, or use "
                                  "--backend cpu");
     return best;
+}
+
+std::vector<DeviceInfo> divide_opencl_device(const DeviceInfo& device, int parts)
+{
+    if (parts > device.most_parts)
+        throw std::runtime_error(
+            "opencl: device " + device.name + " cannot be divided into " + std::to_string(parts) +
+            " parts; " +
+            (device.most_parts == 0 ? "it can only be used whole"
+                                    : "it has " + std::to_string(device.most_parts) + " at most"));
+    std::vector<DeviceInfo> divided;
+    for (const opencl::Device& part : device.device.divided(parts)) {
+        divided.push_back(describe(part, device.index));
+        divided.back().part =
+            ", part " + std::to_string(divided.size()) + " of " + std::to_string(parts);
+    }
+    return divided;
 }
 
 }  // namespace diptych

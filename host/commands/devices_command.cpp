@@ -41,6 +41,9 @@ void print_opencl()
                    device.is_cpu ? "a CPU" : "not a CPU");
         fmt::print("      memory {}, largest allocation {}\n", gibibytes(device.memory_bytes),
                    gibibytes(device.largest_allocation));
+        if (device.most_parts > 0)
+            fmt::print("      can be divided, as --device {}/2, into up to {} parts\n",
+                       device.index, device.most_parts);
         if (!device.is_usable)
             fmt::print("      cannot be used: {}\n", device.why_not);
         else

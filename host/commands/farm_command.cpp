@@ -11,7 +11,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -22,10 +21,6 @@ namespace diptych {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::atomic<bool> is_interrupted{false};
-
-extern "C" void stop_watching(int) { is_interrupted = true; }
 
 // What the tasks will be told, read as they will read it: mistakes show here, not in their logs.
 void check_render_flags(const FarmCommand& command)
@@ -169,8 +164,7 @@ void show(double fraction, const JobCounts& counts, bool is_terminal)
 // Until neither job is in the queue. False when interrupted.
 bool watch(const FarmCommand& command, const Folder& folder, const Jobs& jobs)
 {
-    std::signal(SIGINT, stop_watching);
-    std::signal(SIGTERM, stop_watching);
+    const std::atomic<bool>& is_interrupted = watch_for_interrupts();
     const bool is_terminal = isatty(STDERR_FILENO) != 0;
     std::string last;
     for (bool is_over = false; !is_over;) {

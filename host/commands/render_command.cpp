@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -71,6 +72,10 @@ void print_summary(const RenderCommand& command, const RenderResult& result)
                rays / result.seconds * 1e-6);
     fmt::print(stderr, "dispatches {:.1f} % full, scheduling and merging {:.1f} % of the time\n",
                100 * result.dispatch_fill, 100 * result.scheduling_seconds / result.seconds);
+    for (const DeviceShare& share : statistics.shares)
+        fmt::print(stderr, "{:5.1f} % of the samples: {}{}\n",
+                   100 * double(share.paths) / double(std::max(1ull, statistics.paths)),
+                   share.device, share.is_dropped ? "; dropped" : "");
     if (statistics.undecided_rays > 0)
         fmt::print(
             stderr,
@@ -175,6 +180,7 @@ int run_render_command(const RenderCommand& command)
 {
     const image::WriteOptions write = picture_options(command.view, command.write);
     RenderCommand run = command;
+    run.device = with_device_list(run.device);
     if (run.outputs.empty() && wants_picture(run)) run.outputs.push_back("diptych.png");
     for (const std::string& path : run.outputs) image::check_writable(path);
     if (!run.json.empty() && run.json != "-") image::check_file_writable(run.json);
@@ -182,6 +188,9 @@ int run_render_command(const RenderCommand& command)
         if (run.pixel.empty())
             throw std::runtime_error("--capture " + run.capture +
                                      ": of which pixel? add --pixel X,Y");
+        if (run.device.takes_list)
+            throw std::runtime_error("--capture: what one device made of a texture; name one "
+                                     "with --device");
         image::check_file_writable(run.capture);
     }
 

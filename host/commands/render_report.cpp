@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <unistd.h>
 
@@ -179,6 +180,12 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
         {"dropped_samples", result.film.faults().count},
         {"sha256", layers},
     };
+    for (const DeviceShare& share : statistics.shares)
+        report["devices"].push_back(
+            {{"device", share.device},
+             {"samples", share.paths},
+             {"share", double(share.paths) / double(std::max(1ull, statistics.paths))},
+             {"dropped", share.is_dropped}});
     if (error)
         report["error"] = {
             {"target", result.target},        {"rms", error->rms},

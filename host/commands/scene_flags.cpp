@@ -1,5 +1,6 @@
 #include "host/commands/scene_flags.hpp"
 
+#include "backends/device_list.hpp"
 #include "common/textures/procedural.h"
 
 #include <CLI/CLI.hpp>
@@ -181,19 +182,23 @@ void add_device_flags(CLI::App& app, DeviceFlags& flags)
 {
     app.add_option("--backend", flags.backend,
                    "cpu (Embree, vectorised), opencl, twin (what OpenCL runs, as C++) or double")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->each([&flags](const std::string&) { flags.is_backend_given = true; });
     add_device_options(app, flags);
 }
 
 void add_device_options(CLI::App& app, DeviceFlags& flags)
 {
     app.add_option("--device", flags.options.device,
-                   "OpenCL device, by number or part of its name (see diptych devices)");
+                   "OpenCL device, by number or part of its name (see diptych devices). For render "
+                   "and watch also a list that shares the work, as 0,1,cpu; 0/2 is device 0 "
+                   "divided into 2 parts");
     app.add_option("--threads", flags.options.threads, "Threads; 0: as many as the machine has")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
     app.add_option("--memory", flags.memory,
-                   "Memory for path state on the device, as 512M; sets how many paths fly at once")
+                   "Memory for path state on the device, as 512M; sets how many paths fly at once. "
+                   "Of several devices each may take so much")
         ->capture_default_str();
     app.add_option("--launch-ms", flags.options.launch_milliseconds,
                    "OpenCL: keep each kernel launch below this many milliseconds")
@@ -239,10 +244,27 @@ SceneData load_from_flags(const SceneFlags& flags)
 BackendOptions options_from_flags(const DeviceFlags& flags)
 {
     BackendOptions options = flags.options;
+    if (is_device_list(options.device) && !flags.takes_list)
+        refuse("--device", options.device,
+               "several devices are for diptych render and watch; name one");
     options.memory_bytes = parse_bytes("--memory", flags.memory);
     if (options.debug_kernels && flags.backend != "twin")
         throw std::runtime_error("--debug-kernels: only for --backend twin; add that flag");
     return options;
+}
+
+DeviceFlags with_device_list(const DeviceFlags& flags)
+{
+    DeviceFlags listed = flags;
+    const std::string& devices = flags.options.device;
+    if (!is_device_list(devices)) return listed;
+    if (flags.is_backend_given && flags.backend != "cpu" && flags.backend != "opencl")
+        refuse("--device", devices,
+               fmt::format("only for OpenCL devices and cpu; leave out --backend {}, or the list",
+                           flags.backend));
+    listed.backend = backend_of_devices(parse_device_list(devices));
+    listed.takes_list = true;
+    return listed;
 }
 
 }  // namespace diptych

@@ -31,6 +31,8 @@ struct DeviceFlags {
     std::string backend = "cpu";
     BackendOptions options;
     std::string memory = "512M";
+    bool is_backend_given = false;
+    bool takes_list = false;  // of several devices
 };
 
 void add_scene_flags(CLI::App& app, SceneFlags& flags);
@@ -41,6 +43,8 @@ void add_device_options(CLI::App& app, DeviceFlags& flags);  // without --backen
 // Checks what the flags say and loads the scene, settings filled in. Throws std::runtime_error.
 SceneData load_from_flags(const SceneFlags& flags);
 BackendOptions options_from_flags(const DeviceFlags& flags);
+// For commands that can use several devices: the flags with the backend that --device asks for.
+DeviceFlags with_device_list(const DeviceFlags& flags);
 
 // "640x480", "512M", "1,2.5,3": throw std::runtime_error that names the flag.
 std::pair<int, int> parse_size(const std::string& text);

@@ -118,6 +118,7 @@ CLI::App* add_watch_command(CLI::App& app, WatchCommand& command)
 int run_watch_command(const WatchCommand& command)
 {
     RenderCommand run = command.render;
+    run.device = with_device_list(run.device);
     const image::WriteOptions write = picture_options(run.view, run.write);
     if (run.outputs.empty()) run.outputs.push_back("diptych.png");
     for (const std::string& path : run.outputs) image::check_writable(path);
