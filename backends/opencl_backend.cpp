@@ -12,7 +12,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
@@ -87,7 +86,6 @@ private:
     opencl::Context context_;
     opencl::Queue queue_;
     ProgramCache cache_;
-    int fails_at_ = 0;
     int dispatches_ = 0;
 
     unsigned effects_ = 0;
@@ -147,17 +145,9 @@ int scene_row(const char* wanted)
 
 constexpr int sentinel = int(0xcdcdcdcd);  // trace(): marks what no stage has written
 
-// DIPTYCH_FAIL_AT: the dispatch, counted from 1, at which every OpenCL device is to fail; what
-// becomes of a render then can be tried on any device.
-int planned_failure()
-{
-    const char* text = std::getenv("DIPTYCH_FAIL_AT");
-    return text ? std::atoi(text) : 0;
-}
-
 OpenclBackend::OpenclBackend(const BackendOptions& options, const DeviceInfo& device)
     : options_(options), device_(device), context_(device_.device), queue_(context_.queue()),
-      cache_(ProgramCache::default_folder()), fails_at_(planned_failure())
+      cache_(ProgramCache::default_folder())
 {
 }
 
@@ -247,7 +237,7 @@ void OpenclBackend::bind_buffers(StageKernel& stage)
 
 void OpenclBackend::begin(const Dispatch& dispatch)
 {
-    if (++dispatches_ == fails_at_)
+    if (++dispatches_ == device_.fails_at)
         throw std::runtime_error("opencl: fails, as DIPTYCH_FAIL_AT asks");
     paths_ = dispatch.paths();
     results_ = dispatch.results();

@@ -66,6 +66,13 @@ size_t largest_allocation(const opencl::Device& device)
     return wanted > 0 ? std::min<size_t>(own, wanted) : own;
 }
 
+// What becomes of a render then can be tried on any device: DIPTYCH_FAIL_AT names the dispatch.
+int planned_failure()
+{
+    const char* text = std::getenv("DIPTYCH_FAIL_AT");
+    return text ? std::atoi(text) : 0;
+}
+
 DeviceInfo describe(const opencl::Device& device, int index)
 {
     DeviceInfo info;
@@ -79,6 +86,7 @@ DeviceInfo describe(const opencl::Device& device, int index)
     info.largest_allocation = largest_allocation(device);
     info.group_size = group_size(device);
     info.most_parts = device.most_parts();
+    info.fails_at = planned_failure();
     info.is_cpu = (device.number<cl_device_type>(CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
     info.why_not = why_unusable(device);
     info.is_usable = info.why_not.empty();

@@ -20,6 +20,7 @@ struct DeviceInfo {
     size_t largest_allocation = 0;
     int group_size = 1;  // of all kernels: a power of two that the device can run
     int most_parts = 0;  // that it can be divided into; 0: it cannot
+    int fails_at = 0;    // tests: the dispatch, from 1 on, at which it is to fail
     bool is_cpu = false;
     bool is_exact = true;  // division and square root round as IEEE 754 says
     bool is_usable = true;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -28,8 +29,9 @@ struct Rendered {
 Rendered render(const TestFolder& folder, std::vector<std::string> flags,
                 std::map<std::string, std::string> environment = two_devices)
 {
-    std::vector<std::string> words = {"render", "--size", "96x64",           "--samples",
-                                      "32",     "-o",     folder / "out.exr"};
+    std::vector<std::string> words = {"render", "--size", "96x64", "-o", folder / "out.exr"};
+    if (std::ranges::find(flags, "--samples") == flags.end())
+        words.insert(words.end(), {"--samples", "32"});
     words.insert(words.end(), flags.begin(), flags.end());
     Rendered rendered{run_diptych(words, {.seconds = 300, .environment = std::move(environment)}),
                       {}};
