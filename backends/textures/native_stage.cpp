@@ -67,6 +67,15 @@ std::string processor()
     return model + flags;
 }
 
+// g++'s jump threading takes loops apart that it would else have put into lanes (fbm, worley);
+// clang knows no such flag.
+void keep_loops_whole(const std::string& program, std::vector<std::string>& flags)
+{
+    const char* flag = "-fno-thread-jumps";
+    if (run_program({program, flag, "-E", "-x", "c", "/dev/null"}).exit_code == 0)
+        flags.push_back(flag);
+}
+
 // As kernels_cpu/CMakeLists.txt compiles the kernel sets.
 std::vector<std::string> flags_for(const NativeStageOptions& options)
 {
@@ -98,8 +107,10 @@ std::vector<std::string> flags_for(const NativeStageOptions& options)
         return flags;
     }
     flags.push_back("-DALWAYS_INLINE=__attribute__((always_inline))");
+    // Where a value lies at each instruction is a quarter of g++'s work and little use in lanes:
+    // debuggers run the scalar stage. Lines and names stay.
     if (is_vector)
-        flags.insert(flags.end(), {"-O3", "-march=native"});
+        flags.insert(flags.end(), {"-O3", "-march=native", "-fno-var-tracking"});
     else
         flags.insert(flags.end(), {"-O2", "-fno-tree-vectorize"});
     return flags;
@@ -187,7 +198,9 @@ void count_texture_compilation() { ++compilations; }
 NativeStage::NativeStage(const SceneData& scene, const NativeStageOptions& options)
 {
     const std::string program = compiler();
-    const std::vector<std::string> flags = flags_for(options);
+    std::vector<std::string> flags = flags_for(options);
+    if (options.kind == NativeStageKind::vector && !options.is_debug)
+        keep_loops_whole(program, flags);
     const std::string functions =
         cpp_texture_functions(scene, {options.generated_dir, options.use_generated});
     const std::string key = key_of(program, flags, functions);

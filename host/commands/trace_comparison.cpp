@@ -197,7 +197,7 @@ bool compare_textures(const StageState& a, const StageState& b, int p, const Bou
                       TraceComparison& comparison)
 {
     StageTally& tally = comparison.stages[a.stage];
-    if (a.planes[row_hit_triangle][size_t(p)] < 0) return true;
+    if (a.texture_results.empty() || a.planes[row_hit_triangle][size_t(p)] < 0) return true;
     for (size_t k = size_t(p); k < std::min(a.texture_results.size(), b.texture_results.size());
          k += size_t(a.paths)) {
         const double x = a.texture_results[k], y = b.texture_results[k];
