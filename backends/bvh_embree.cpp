@@ -1,16 +1,12 @@
 #include "backends/bvh_embree.hpp"
 
+#include "kernels_cpu/embree.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <new>
 #include <stdexcept>
 #include <string>
-
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
 
 namespace diptych {
 

@@ -4,15 +4,9 @@
 // a name: the types of the views differ from one kernel set to another.
 #pragma once
 
-#if defined(__AVX512F__)
-constexpr int width = 16;
-using RayHits = RTCRayHit16;
-using Rays = RTCRay16;
-#else
-constexpr int width = 8;
-using RayHits = RTCRayHit8;
-using Rays = RTCRay8;
-#endif
+using embree::RayHits;
+using embree::Rays;
+using embree::width;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
@@ -29,7 +23,7 @@ Views typed(const SceneView& scene, const PathView& paths)
 
 // What filters need of the rays of a packet.
 struct PacketContext {
-    RTCIntersectContext embree;  // first: Embree hands its address back
+    embree::Query query;  // first: Embree hands its address back
     const Views* views;
     const int* first_triangle;  // by instance
     int path[width];

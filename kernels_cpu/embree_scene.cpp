@@ -4,12 +4,7 @@
 
 #include "common/alpha.h"
 #include "common/buffers.h"
-
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
+#include "kernels_cpu/embree.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -60,11 +55,10 @@ constexpr bool packets_of_scattered_rays = width == 16;
 
 // purpose: as of alpha_seed().
 PacketContext context_of(const Views& views, const std::vector<int>& first_triangle,
-                         RTCIntersectContextFlags flags, int purpose)
+                         bool is_coherent, int purpose)
 {
     PacketContext context;
-    rtcInitIntersectContext(&context.embree);
-    context.embree.flags = flags;
+    context.query = embree::begin_query(is_coherent);
     context.views = &views;
     context.first_triangle = first_triangle.data();
     context.purpose = purpose;
@@ -109,7 +103,7 @@ int intersect_singly(RTCScene scene, PacketContext& context, const Views& views,
         if (paths.depth[i] < 0) continue;
         ++rays;
         RTCRayHit query = query_of(paths.ray_origin, paths.ray_direction, n, i, nearest, far_away);
-        rtcIntersect1(scene, &context.embree, &query);
+        embree::intersect(scene, context.query, query);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
         const int instance = instance_of(query.hit.instID[0]);
         paths.hit_instance[i] = instance;
@@ -239,10 +233,7 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context = context_of(views, implementation_->first_triangle,
-                                       is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                   : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT,
-                                       0);
+    PacketContext context = context_of(views, implementation_->first_triangle, is_coherent, 0);
     context.leaves_records = has_records(views);
     if (!is_coherent && !packets_of_scattered_rays)
         return intersect_singly(implementation_->top, context, views, count);
@@ -271,11 +262,7 @@ int EmbreeScene::intersect(const SceneView& scene_view, const PathView& path_vie
             packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
             packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
         }
-#if defined(__AVX512F__)
-        rtcIntersect16(valid, implementation_->top, &context.embree, &packet);
-#else
-        rtcIntersect8(valid, implementation_->top, &context.embree, &packet);
-#endif
+        embree::intersect(valid, implementation_->top, context.query, packet);
         for (int k = 0; k < width; ++k) {
             const int i = first + k;
             if (valid[k] == 0 && paths.lookup != LOOKUP_SURFACE) continue;
@@ -298,8 +285,7 @@ void EmbreeScene::find_asked(const SceneView& scene_view, const PathView& path_v
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context = context_of(views, implementation_->first_triangle,
-                                       RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, 1);
+    PacketContext context = context_of(views, implementation_->first_triangle, false, 1);
     context.leaves_records = context.seeks_asked = true;
     const int n = paths.capacity;
     for (int k = 0; k < count; ++k) {
@@ -307,7 +293,7 @@ void EmbreeScene::find_asked(const SceneView& scene_view, const PathView& path_v
         const float nearest = begin_lane(context, paths, 0, i, true);
         RTCRayHit query = query_of(paths.shadow_origin, paths.shadow_direction, n, i, nearest,
                                    paths.shadow_distance[i]);
-        rtcIntersect1(implementation_->top, &context.embree, &query);
+        embree::intersect(implementation_->top, context.query, query);
         const bool is_hit = query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
         const int instance = is_hit ? instance_of(query.hit.instID[0]) : 0;
         const int triangle = is_hit ? context.first_triangle[instance] + int(query.hit.primID) : -1;
@@ -320,8 +306,7 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context = context_of(views, implementation_->first_triangle,
-                                       RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, 1);
+    PacketContext context = context_of(views, implementation_->first_triangle, false, 1);
     context.leaves_records = has_records(views);
     std::vector<int> asked;
     if (context.leaves_records && paths.lookup != LOOKUP_SURFACE) {
@@ -361,11 +346,7 @@ int EmbreeScene::occlusion(const SceneView& scene_view, const PathView& path_vie
             ++lanes;
         }
         if (lanes == 0) break;
-#if defined(__AVX512F__)
-        rtcOccluded16(valid, implementation_->top, &context.embree, &packet);
-#else
-        rtcOccluded8(valid, implementation_->top, &context.embree, &packet);
-#endif
+        embree::occlude(valid, implementation_->top, context.query, packet);
         for (int k = 0; k < lanes; ++k) {
             const bool is_occluded = packet.tfar[k] < 0.0f;
             paths.is_occluded[context.path[k]] = is_occluded ? 1 : 0;
@@ -383,8 +364,7 @@ void EmbreeScene::occlusion_of_neighbours(const SceneView& scene_view, const Pat
 {
     const Views views = typed(scene_view, path_view);
     const Paths& paths = views.paths;
-    PacketContext context = context_of(views, implementation_->first_triangle,
-                                       RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, 1);
+    PacketContext context = context_of(views, implementation_->first_triangle, false, 1);
     alignas(64) int valid[width];
     alignas(64) Rays packet;
     for (int k = 0; k < width; ++k) {
@@ -410,11 +390,7 @@ void EmbreeScene::occlusion_of_neighbours(const SceneView& scene_view, const Pat
             context.path[k] = first + k;
             valid[k] = first + k < count ? -1 : 0;
         }
-#if defined(__AVX512F__)
-        rtcOccluded16(valid, implementation_->top, &context.embree, &packet);
-#else
-        rtcOccluded8(valid, implementation_->top, &context.embree, &packet);
-#endif
+        embree::occlude(valid, implementation_->top, context.query, packet);
         for (int k = 0; k < width; ++k)
             paths.is_occluded[first + k] = packet.tfar[k] < 0.0f ? 1 : 0;
     }

@@ -1,10 +1,6 @@
 #include "tests/bench/bare_embree.hpp"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
+#include "kernels_cpu/embree.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -14,19 +10,9 @@
 namespace diptych {
 namespace {
 
-#if defined(__AVX512F__)
-constexpr int width = 16;
-using RayHits = RTCRayHit16;
-using Rays = RTCRay16;
-constexpr auto intersect_packet = rtcIntersect16;
-constexpr auto occlude_packet = rtcOccluded16;
-#else
-constexpr int width = 8;
-using RayHits = RTCRayHit8;
-using Rays = RTCRay8;
-constexpr auto intersect_packet = rtcIntersect8;
-constexpr auto occlude_packet = rtcOccluded8;
-#endif
+using embree::RayHits;
+using embree::Rays;
+using embree::width;
 
 void fill(Rays& packet, const BareRays& rays, int first)
 {
@@ -133,10 +119,7 @@ BareEmbree::~BareEmbree() = default;
 
 int BareEmbree::intersect(const BareRays& rays, bool is_coherent) const
 {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags =
-        is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    embree::Query query = embree::begin_query(is_coherent);
     int hits = 0;
     for (int first = 0; first < rays.count; first += width) {
         alignas(64) int valid[width];
@@ -145,7 +128,7 @@ int BareEmbree::intersect(const BareRays& rays, bool is_coherent) const
         fill(packet.ray, rays, first);
         std::fill_n(packet.hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
         std::fill_n(packet.hit.instID[0], width, RTC_INVALID_GEOMETRY_ID);
-        intersect_packet(valid, implementation_->top, &context, &packet);
+        embree::intersect(valid, implementation_->top, query, packet);
         for (int k = 0; k < width; ++k)
             hits += valid[k] && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
     }
@@ -154,16 +137,14 @@ int BareEmbree::intersect(const BareRays& rays, bool is_coherent) const
 
 int BareEmbree::occlude(const BareRays& rays) const
 {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    embree::Query query = embree::begin_query(false);
     int hits = 0;
     for (int first = 0; first < rays.count; first += width) {
         alignas(64) int valid[width];
         alignas(64) Rays packet;
         set_valid(valid, rays.count - first);
         fill(packet, rays, first);
-        occlude_packet(valid, implementation_->top, &context, &packet);
+        embree::occlude(valid, implementation_->top, query, packet);
         for (int k = 0; k < width; ++k) hits += valid[k] && packet.tfar[k] < 0.0f;
     }
     return hits;

@@ -1,13 +1,9 @@
 #include "tests/common/bvh_fixture.hpp"
 
+#include "kernels_cpu/embree.hpp"
+
 #include <cmath>
 #include <random>
-
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
 
 using diptych::SceneData;
 
@@ -303,13 +299,8 @@ Hit EmbreeScene::closest(const TestRay& ray) const
     query.ray.tfar = FLOAT_MAX;
     query.ray.mask = ~0u;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-    rtcIntersect1(scene_, &query);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_, &context, &query);
-#endif
+    diptych::embree::Query context = diptych::embree::begin_query(false);
+    diptych::embree::intersect(scene_, context, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {FLOAT_MAX, -1, -1};
     return {query.ray.tfar, int(query.hit.primID), int(query.hit.geomID)};
 }
