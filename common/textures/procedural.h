@@ -1,6 +1,6 @@
 // Procedural textures as the kernels see them: what a texture knows about the place it is asked
 // for, the programs that run textures of a material in order, and the arguments they are given.
-// Both lie behind the materials in the same buffer, in whole pages of the size of a Material, as
+// These lie behind the materials in the same buffer, in whole pages of the size of a Material, as
 // words (material_word): changing an argument is changing bytes.
 //
 //   program: {steps, group, first request, requests, first step ...}, each step TEXTURE_STEP_WORDS words:
@@ -9,6 +9,7 @@
 //            distance to take where the first is not above zero}
 //   region:  four words an argument: {source, first word of the value, elements, 0}, then values.
 //            source >= 0: the value is what lies in that stack slot; -1: a constant.
+//   frames:  where LocalPos is asked for, OBJECT_FRAME_WORDS an object: see object_position.
 #pragma once
 
 #include "common/random.h"
