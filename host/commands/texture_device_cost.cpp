@@ -147,7 +147,7 @@ void nvidia(const std::string& source, unsigned effects, int most_registers,
     const std::string bitcode = library("nvptx64--nvidiacl.bc");
     const std::string assembler = first_program({"ptxas", "/usr/local/cuda/bin/ptxas"});
     if (clang().empty()) missing.missing = "no clang";
-    if (bitcode.empty()) missing.missing = "no libclc (Debian: libclc-14)";
+    if (bitcode.empty()) missing.missing = "no libclc (Debian: libclc-14 or libclc-19)";
     if (assembler.empty()) missing.missing = "no ptxas (CUDA toolkit)";
     const std::string out = folder / "kernel.ptx";
     const auto start = std::chrono::steady_clock::now();
@@ -187,7 +187,7 @@ DeviceCost amd(const std::string& source, unsigned effects, const ScratchFolder&
     cost.target = "gfx900";
     const std::string bitcode = library("amdgcn--amdhsa.bc");
     if (clang().empty()) cost.missing = "no clang";
-    if (bitcode.empty()) cost.missing = "no libclc (Debian: libclc-14)";
+    if (bitcode.empty()) cost.missing = "no libclc (Debian: libclc-14 or libclc-19)";
     if (!cost.missing.empty()) return cost;
     const std::string out = folder / "kernel.s";
     const auto start = std::chrono::steady_clock::now();
