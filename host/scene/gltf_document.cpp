@@ -6,6 +6,7 @@
 #include "host/scene/uri.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <fstream>
 

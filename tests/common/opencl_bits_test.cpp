@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <iterator>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 namespace {

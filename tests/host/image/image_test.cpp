@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstring>
 #include <random>
+#include <stdexcept>
 #include <sys/resource.h>
 #include <thread>
 

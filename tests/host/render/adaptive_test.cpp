@@ -2,6 +2,7 @@
 #include "host/render/render.hpp"
 #include "tests/laws/measure.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace {

@@ -3,6 +3,7 @@
 #include "host/scene/scene_error.hpp"
 
 #include <OpenImageIO/imageio.h>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
