@@ -25,6 +25,21 @@ function(house_test name)
   add_test(NAME ${name} COMMAND ${name})
 endfunction()
 
+# house_oclgrind_test(NAME COMMAND...): the program on Oclgrind's device, without a finding; skipped, and said so, where there
+# is no Oclgrind: Debian 13 has none.
+function(house_oclgrind_test name)
+  find_program(OCLGRIND oclgrind)
+  if(NOT OCLGRIND)
+    add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: no oclgrind here (Debian 12 has a package, Debian 13 none)")
+    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped: ")
+    return()
+  endif()
+  # unoptimised: Oclgrind does not know some intrinsics that the optimiser finds
+  add_test(NAME ${name} COMMAND ${OCLGRIND} --build-options -cl-opt-disable --data-races --uninitialized --check-api ${ARGN})
+  set_tests_properties(${name} PROPERTIES
+    FAIL_REGULAR_EXPRESSION "Invalid ;Uninitialized ;data race;ERROR;FAILED;runtime error;SKIPPED")
+endfunction()
+
 # Takes folders that do not exist off an imported target's include path: Debian's OpenImageIO names OpenCV's, whether
 # OpenCV is installed or not, and CMake stops at that.
 function(house_drop_missing_includes target)

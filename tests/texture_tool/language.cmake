@@ -37,12 +37,8 @@ foreach(texture paper_attributes paper_two_images predecessor forms everything d
       DEPENDS foreign_program.cl foreign_hooks.h ${out}.cl VERBATIM)
     add_custom_target(foreign_kernel_${texture} ALL DEPENDS ${out}_kernel.cl)
     set(opencl $<TARGET_FILE:foreign_opencl> ${out}_kernel.cl)
-    find_program(OCLGRIND oclgrind)
-    if(OCLGRIND AND texture IN_LIST HOSTILE_TEXTURES AND NOT texture STREQUAL forms)  # Oclgrind itself ends with a fault in that one
-      add_test(NAME texture_oclgrind_${texture} COMMAND ${OCLGRIND} --build-options -cl-opt-disable --data-races
-        --uninitialized --check-api $<TARGET_FILE:foreign_opencl> ${out}_kernel.cl)
-      set_tests_properties(texture_oclgrind_${texture} PROPERTIES
-        FAIL_REGULAR_EXPRESSION "Invalid ;Uninitialized ;data race;ERROR;runtime error")
+    if(texture IN_LIST HOSTILE_TEXTURES AND NOT texture STREQUAL forms)  # Oclgrind itself ends with a fault in that one
+      house_oclgrind_test(texture_oclgrind_${texture} $<TARGET_FILE:foreign_opencl> ${out}_kernel.cl)
     endif()
   endif()
   add_test(NAME texture_language_${texture}
