@@ -49,7 +49,10 @@ struct StageState {
 
 // What a backend will allocate, known before it does.
 struct Plan {
-    int items = 0;  // work items a dispatch: M = items * QUANTUM << (2 * BLOCK_SHIFT) paths
+    // Work items whose paths are under way at once: M = items * QUANTUM << (2 * BLOCK_SHIFT) slots.
+    // So many a call of trace() takes.
+    int items = 0;
+    int most_items = 0;  // that a dispatch may have: the slots of paths that end take the next ones
     size_t scene_bytes = 0;      // buffers of the scene, on the device
     size_t path_bytes = 0;       // path state and results
     size_t structure_bytes = 0;  // acceleration structure, estimated where a library builds it
@@ -62,6 +65,19 @@ struct DeviceShare {
     bool is_dropped = false;
 };
 
+// What becomes of a dispatch that is under way.
+enum class Wish {
+    go_on,
+    leave,   // return now: what has begun goes on in the next dispatch
+    finish,  // begin nothing new, and return when what has begun has ended
+};
+
+// How a long list of work is done piece by piece while paths stay under way.
+struct Pace {
+    size_t following = 0;        // items of equal size: no need to wait for the last paths
+    std::function<Wish()> wish;  // asked often; none: go on to the end
+};
+
 // Counted and timed since upload().
 struct Statistics {
     std::map<std::string, double> stage_seconds;  // summed over threads
@@ -70,6 +86,11 @@ struct Statistics {
     unsigned long long shadow_rays = 0;
     unsigned long long undecided_rays = 0;  // see most_alpha_layers
     unsigned long long paths = 0;
+    size_t allocated_bytes = 0;  // of what a Plan counts but a library's structure; cpu: paths only
+    // Of every step that all slots of a dispatch take together: slots, and those with a live path.
+    // The lanes of packets where a processor takes them as they come.
+    unsigned long long slot_steps = 0;
+    unsigned long long busy_steps = 0;
     std::vector<DeviceShare> shares = {};  // where there are several devices
 };
 
@@ -108,6 +129,15 @@ public:
     // Runs every stage for every path. The result of an item does not depend on what else is in the
     // dispatch. Adding samples to a result entry goes in ascending order, from zero (ids from -1).
     virtual void render(const Dispatch& dispatch, Results& results) = 0;
+
+    // The same, but may return before the end: how many of the items, from the first on, are done;
+    // `results` is then that of a dispatch of these. A next dispatch that begins with the others
+    // goes on with what is under way, any other forgets it.
+    virtual int advance(const Dispatch& dispatch, const Pace&, Results& results)
+    {
+        render(dispatch, results);
+        return int(dispatch.items.size());
+    }
 
     // The same, stage by stage without compaction, showing the state after each stage; for
     // comparison, not for speed.

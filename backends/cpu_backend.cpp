@@ -62,6 +62,7 @@ public:
         const size_t room = options_.memory_bytes - fixed;
         // Beyond some hundred items a dispatch gains nothing: they run one after the other anyway.
         plan.items = int(std::clamp<size_t>(room / (4 * result_bytes), 1, 128));
+        plan.most_items = plan.items;
         plan.path_bytes = fixed + size_t(plan.items) * result_bytes;
         return plan;
     }
@@ -342,6 +343,7 @@ Statistics CpuBackend::statistics() const
 {
     Statistics statistics;
     statistics.setup_seconds = setup_seconds_;
+    statistics.allocated_bytes = result_memory_.size();
     for (const auto& chunk : chunks_) {
 #define ADD_STAGE(name, body, when, needs) \
     statistics.stage_seconds[#name] += chunk->stage_seconds[STAGE_##name];
@@ -350,6 +352,9 @@ Statistics CpuBackend::statistics() const
         statistics.shadow_rays += chunk->shadow_rays;
         statistics.undecided_rays += chunk->undecided_rays;
         statistics.paths += chunk->paths;
+        statistics.allocated_bytes += chunk->bytes();
+        statistics.slot_steps += chunk->slot_steps;
+        statistics.busy_steps += chunk->busy_steps;
     }
     return statistics;
 }

@@ -15,6 +15,10 @@ namespace {
 
 constexpr int pieces_ahead = 4;  // of each device, in a dispatch: few waits for the slowest
 
+// Of a device whose slots are filled again and again: enough to keep them busy, so few that what is
+// left can be shared.
+int piece_items(const Plan& plan) { return std::clamp(4 * plan.items, 1, plan.most_items); }
+
 // A plan's items are blocks of the largest size; an OpenCL device has room for four times as many
 // of smaller ones.
 int most_items(int planned, int pixel_shift)
@@ -102,7 +106,8 @@ Plan DeviceGroup::plan(const SceneData& scene) const
     for (size_t d = 0; d < devices_.size(); ++d) {
         if (!paces_[d].lives) continue;
         const Plan plan = devices_[d]->plan(scene);
-        sum.items += pieces_ahead * plan.items;
+        sum.items += plan.items;
+        sum.most_items += pieces_ahead * piece_items(plan);
         sum.scene_bytes += plan.scene_bytes;
         sum.path_bytes += plan.path_bytes;
         sum.structure_bytes += plan.structure_bytes;
@@ -119,7 +124,7 @@ void DeviceGroup::upload(SceneData& scene)
     for (size_t d = 0; d < devices_.size(); ++d) {
         if (!paces_[d].lives) continue;
         devices_[d]->upload(scene);
-        planned_[d] = std::max(1, devices_[d]->plan(scene).items);
+        planned_[d] = piece_items(devices_[d]->plan(scene));
         paces_[d].per_second = 0;
     }
 }
@@ -212,6 +217,9 @@ Statistics DeviceGroup::statistics() const
         sum.rays += own.rays;
         sum.shadow_rays += own.shadow_rays;
         sum.undecided_rays += own.undecided_rays;
+        sum.allocated_bytes += own.allocated_bytes;
+        sum.slot_steps += own.slot_steps;
+        sum.busy_steps += own.busy_steps;
         sum.paths += paths_[d];
         sum.shares.push_back({devices_[d]->description(), paths_[d], !paces_[d].lives});
     }

@@ -201,18 +201,18 @@ void Kernel::set(int index, int value)
     set_bytes(index, sizeof number, &number);
 }
 
-void Queue::write(const Buffer& buffer, size_t bytes, const void* data)
+void Queue::write(const Buffer& buffer, size_t bytes, const void* data, size_t first)
 {
     if (bytes == 0) return;
-    check(clEnqueueWriteBuffer(queue_.get(), buffer.get(), CL_TRUE, 0, bytes, data, 0, nullptr,
+    check(clEnqueueWriteBuffer(queue_.get(), buffer.get(), CL_TRUE, first, bytes, data, 0, nullptr,
                                nullptr),
           "clEnqueueWriteBuffer", at_);
 }
 
-void Queue::read(const Buffer& buffer, size_t bytes, void* data)
+void Queue::read(const Buffer& buffer, size_t bytes, void* data, size_t first)
 {
     if (bytes == 0) return;
-    check(clEnqueueReadBuffer(queue_.get(), buffer.get(), CL_TRUE, 0, bytes, data, 0, nullptr,
+    check(clEnqueueReadBuffer(queue_.get(), buffer.get(), CL_TRUE, first, bytes, data, 0, nullptr,
                               nullptr),
           "clEnqueueReadBuffer", at_);
 }

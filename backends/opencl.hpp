@@ -131,9 +131,10 @@ class Queue {
 public:
     Queue() = default;
 
-    void write(const Buffer& buffer, size_t bytes, const void* data);
-    void read(const Buffer& buffer, size_t bytes, void* data);  // waits
-    void fill(const Buffer& buffer, size_t bytes, int value);   // bytes: a multiple of 4
+    // Both wait; `first`: byte of the buffer.
+    void write(const Buffer& buffer, size_t bytes, const void* data, size_t first = 0);
+    void read(const Buffer& buffer, size_t bytes, void* data, size_t first = 0);
+    void fill(const Buffer& buffer, size_t bytes, int value);  // bytes: a multiple of 4
     Event launch(const Kernel& kernel, size_t groups, size_t group_size);
     void flush();
     void finish();

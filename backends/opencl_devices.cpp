@@ -84,6 +84,7 @@ DeviceInfo describe(const opencl::Device& device, int index)
     info.driver = device.text(CL_DRIVER_VERSION);
     info.memory_bytes = size_t(device.number<cl_ulong>(CL_DEVICE_GLOBAL_MEM_SIZE));
     info.largest_allocation = largest_allocation(device);
+    info.units = int(device.number<cl_uint>(CL_DEVICE_MAX_COMPUTE_UNITS));
     info.group_size = group_size(device);
     info.most_parts = device.most_parts();
     info.fails_at = planned_failure();

@@ -18,6 +18,7 @@ struct DeviceInfo {
     std::string driver;
     size_t memory_bytes = 0;
     size_t largest_allocation = 0;
+    int units = 1;       // that compute side by side
     int group_size = 1;  // of all kernels: a power of two that the device can run
     int most_parts = 0;  // that it can be divided into; 0: it cannot
     int fails_at = 0;    // tests: the dispatch, from 1 on, at which it is to fail

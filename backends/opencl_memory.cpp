@@ -3,6 +3,7 @@
 #include "common/as_cpp/path_rows.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 
 namespace diptych {
@@ -11,8 +12,11 @@ namespace {
 constexpr int paths_per_item = QUANTUM << (2 * BLOCK_SHIFT);
 constexpr int results_per_item = 1 << (2 * BLOCK_SHIFT);
 constexpr size_t small_items = 4;     // of a quarter of a block's pixels, in place of a block
-constexpr int most_items = 1024;      // 4 million paths: what keeps the largest GPUs busy
+constexpr int most_items = 256;       // a million paths: what keeps the largest GPUs busy
 constexpr int most_items_of_cpu = 8;  // 32 thousand paths: what stays in a processor's caches
+// Results of a dispatch a slot: while the last of them are under way, others must have room.
+constexpr int results_per_slot = 4;
+constexpr int least_results_per_slot = 1;
 
 std::string megabytes(size_t bytes) { return std::to_string((bytes >> 20) + 1) + " MB"; }
 
@@ -37,35 +41,60 @@ std::vector<PlaneRow> texture_planes_of(const SceneData& scene)
 // Whether rays may wait for textures.
 bool has_rounds(const SceneData& scene) { return (scene.effects & EFFECT_PROCEDURAL_ALPHA) != 0; }
 
-size_t item_bytes(const SceneData& scene)
+// The slots of an item's paths.
+size_t slots_bytes(const SceneData& scene)
 {
     // live, twice, and at most one sum a path; waiting, twice
     const size_t lists = (has_rounds(scene) ? 5 : 3) * sizeof(int);
     const size_t planes = plane_bytes(path_rows) + plane_bytes(texture_planes_of(scene));
-    return paths_per_item * (planes + lists) +
-           results_per_item *
+    return paths_per_item * (planes + lists);
+}
+
+// An item in a list of work, with its results.
+size_t listed_bytes(const SceneData& scene)
+{
+    return results_per_item *
                (plane_bytes(result_rows()) + plane_bytes(texture_result_rows(scene))) +
            small_items * sizeof(WorkItem);
 }
 
-// A buffer of the scene is one allocation.
-void check_allocation(const DeviceInfo& device, const std::string& name, size_t bytes)
+int listed_items(int items, int results_a_slot)
 {
-    if (bytes > device.largest_allocation)
-        throw std::runtime_error("opencl: " + device.name + ": the scene's " + name + " need " +
-                                 megabytes(bytes) + ", the device allocates at most " +
-                                 megabytes(device.largest_allocation) +
-                                 " at once; simplify the scene or use --backend cpu");
+    return items * results_a_slot * (paths_per_item / results_per_item);
+}
+
+bool is_large(const std::string& name)
+{
+#define IS_NAMED(type, row, log_bytes) || name == #row
+    return false LARGE_BUFFERS(IS_NAMED);
+#undef IS_NAMED
+}
+
+// A buffer of the scene is one allocation, or some pages.
+void check_allocation(const DeviceInfo& device, int shift, const std::string& name, size_t bytes)
+{
+    const size_t room =
+        is_large(name) && shift > 0 ? size_t(LARGE_PAGES) << shift : device.largest_allocation;
+    if (bytes > room)
+        throw std::runtime_error(
+            "opencl: " + device.name + ": the scene's " + name + " need " + megabytes(bytes) +
+            ", the device allocates at most " + megabytes(device.largest_allocation) + " at once" +
+            (is_large(name) ? ", of which " + std::to_string(LARGE_PAGES) + " can be used" : "") +
+            "; simplify the scene or use --backend cpu");
 }
 
 // Of the buffers that a dispatch needs, the largest one's share of an item.
-size_t widest_buffer(const SceneData& scene)
+size_t widest_buffer(const SceneData& scene, int results_a_slot)
 {
-    int components = 1;
-    for (const PathRow& row : path_rows) components = std::max(components, row.components);
-    for (const PlaneRow& row : texture_planes_of(scene))
-        components = std::max(components, row.components);
-    return sizeof(float) * size_t(components) * paths_per_item;
+    const auto widest = [](int entries, const auto& rows) {
+        int components = 1;
+        for (const auto& row : rows) components = std::max(components, row.components);
+        return sizeof(float) * size_t(components) * size_t(entries);
+    };
+    const int results = paths_per_item * results_a_slot;
+    return std::max({widest(paths_per_item, path_rows),
+                     widest(paths_per_item, texture_planes_of(scene)),
+                     widest(results, result_rows()), widest(results, texture_result_rows(scene))});
 }
 
 size_t scene_bytes(const SceneData& scene)
@@ -112,36 +141,67 @@ std::vector<PlaneRow> texture_result_rows(const SceneData& scene)
     return {TEXTURE_RESULT_BUFFERS(NUMBERED_ROW)};
 }
 
-std::vector<opencl::Buffer> upload_scene(const opencl::Context& context, opencl::Queue& queue,
-                                         const DeviceInfo& device, const SceneData& scene)
+int page_shift(const DeviceInfo& device, const SceneData& scene)
 {
-    std::vector<opencl::Buffer> buffers;
+    size_t largest = 0;
+#define FIND_LARGEST(type, name, log_bytes)                \
+    static_assert(sizeof(type) == size_t(1) << log_bytes); \
+    largest = std::max(largest, scene.name.size() * sizeof(type));
+    LARGE_BUFFERS(FIND_LARGEST)
+#undef FIND_LARGEST
+    return largest > device.largest_allocation ? int(std::bit_width(device.largest_allocation)) - 1
+                                               : 0;
+}
+
+SceneMemory upload_scene(const opencl::Context& context, opencl::Queue& queue,
+                         const DeviceInfo& device, const SceneData& scene)
+{
+    SceneMemory memory;
+    const int shift = page_shift(device, scene);
+    const size_t page = shift > 0 ? size_t(1) << shift : ~size_t(0);
     const auto upload = [&](const char* name, const void* data, size_t bytes) {
-        check_allocation(device, name, bytes);
-        buffers.push_back(context.buffer(bytes, name));
-        queue.write(buffers.back(), bytes, data);
+        opencl::Buffer buffer = context.buffer(bytes, name);
+        queue.write(buffer, bytes, data);
+        return buffer;
     };
     // kernels may read element 0 of a buffer that the scene has no use for
-#define UPLOAD(type, name)                                                  \
-    if (scene.name.empty()) {                                               \
-        const type nothing = {};                                            \
-        upload(#name, &nothing, sizeof(type));                              \
-    } else {                                                                \
-        upload(#name, scene.name.data(), scene.name.size() * sizeof(type)); \
+#define UPLOAD(type, name)                                                         \
+    {                                                                              \
+        const type nothing = {};                                                   \
+        const size_t bytes = scene.name.size() * sizeof(type);                     \
+        const void* data = scene.name.empty() ? &nothing : scene.name.data();      \
+        check_allocation(device, shift, #name, bytes);                             \
+        const size_t whole = is_large(#name) ? std::min(bytes, page) : bytes;      \
+        memory.rows.push_back(upload(#name, data, std::max(whole, sizeof(type)))); \
     }
     SCENE_BUFFERS(UPLOAD)
 #undef UPLOAD
-    return buffers;
+    const auto upload_pages = [&](const char* name, const void* data, size_t bytes) {
+        for (size_t k = 1; k < LARGE_PAGES; ++k) {
+            const size_t first = k * (bytes > page ? page : bytes);
+            opencl::Buffer buffer;
+            if (first < bytes)
+                buffer = upload(name, static_cast<const char*>(data) + first,
+                                std::min(bytes - first, page));
+            memory.pages.push_back(std::move(buffer));
+        }
+    };
+#define UPLOAD_PAGES(type, name, log_bytes) \
+    upload_pages(#name, scene.name.data(), scene.name.size() * sizeof(type));
+    LARGE_BUFFERS(UPLOAD_PAGES)
+#undef UPLOAD_PAGES
+    return memory;
 }
 
 DispatchMemory::DispatchMemory(const opencl::Context& context, const SceneData& scene,
-                               int item_count, int group_size)
-    : paths(item_count * paths_per_item), results(item_count * results_per_item),
+                               const Plan& plan, int group_size)
+    : paths(plan.items * paths_per_item), results(plan.most_items * results_per_item),
       path_planes(planes(context, path_rows, paths)),
       result_planes(planes(context, result_rows(), results)),
       texture_planes(planes(context, texture_planes_of(scene), paths)),
-      texture_result_planes(planes(context, texture_result_rows(scene), results)),
-      items(context.buffer(sizeof(WorkItem) * small_items * size_t(item_count), "items"))
+      texture_result_rows(diptych::texture_result_rows(scene)),
+      texture_result_planes(planes(context, texture_result_rows, results)),
+      items(context.buffer(sizeof(WorkItem) * small_items * size_t(plan.most_items), "items"))
 {
     for (opencl::Buffer& list : live) list = context.buffer(sizeof(int) * size_t(paths), "live");
     if (has_rounds(scene))
@@ -152,9 +212,64 @@ DispatchMemory::DispatchMemory(const opencl::Context& context, const SceneData& 
     total = context.buffer(sizeof(int), "total");
 }
 
+size_t bytes_of(std::span<const opencl::Buffer> buffers)
+{
+    size_t bytes = 0;
+    for (const opencl::Buffer& buffer : buffers) bytes += buffer.bytes();
+    return bytes;
+}
+
+size_t DispatchMemory::bytes() const
+{
+    return bytes_of(path_planes) + bytes_of(result_planes) + bytes_of(texture_planes) +
+           bytes_of(texture_result_planes) + bytes_of(live) + bytes_of(waiting) + items.bytes() +
+           sums.bytes() + total.bytes();
+}
+
+void DispatchMemory::read_results(opencl::Queue& queue, Results& rows, int first, int count) const
+{
+    const auto read = [&](auto& to, const PlaneRow& row, const opencl::Buffer& buffer) {
+        to.resize(size_t(row.components) * size_t(count));
+        const size_t element = sizeof to[0];
+        for (size_t c = 0; c < size_t(row.components); ++c)
+            queue.read(buffer, element * size_t(count), to.data() + c * size_t(count),
+                       element * (c * size_t(results) + size_t(first)));
+    };
+    size_t row = 0;
+#define READ_RESULT(type, name) read(rows.name, result_rows()[row], result_planes[row]), ++row;
+    RESULT_BUFFERS(READ_RESULT)
+#undef READ_RESULT
+    row = 0;
+#define READ_RESULT(type, name) \
+    read(rows.name, texture_result_rows[row], texture_result_planes[row]), ++row;
+    TEXTURE_RESULT_BUFFERS(READ_RESULT)
+#undef READ_RESULT
+}
+
+void DispatchMemory::write_results(opencl::Queue& queue, const Results& rows, int count) const
+{
+    const auto write = [&](const auto& from, const PlaneRow& row, const opencl::Buffer& buffer) {
+        const size_t element = sizeof from[0];
+        for (size_t c = 0; c < size_t(row.components); ++c)
+            queue.write(buffer, element * size_t(count), from.data() + c * size_t(count),
+                        element * c * size_t(results));
+    };
+    size_t row = 0;
+#define WRITE_RESULT(type, name) write(rows.name, result_rows()[row], result_planes[row]), ++row;
+    RESULT_BUFFERS(WRITE_RESULT)
+#undef WRITE_RESULT
+    row = 0;
+#define WRITE_RESULT(type, name) \
+    write(rows.name, texture_result_rows[row], texture_result_planes[row]), ++row;
+    TEXTURE_RESULT_BUFFERS(WRITE_RESULT)
+#undef WRITE_RESULT
+}
+
 Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory_bytes)
 {
-#define CHECK_ROW(type, name) check_allocation(device, #name, scene.name.size() * sizeof(type));
+    const int shift = page_shift(device, scene);
+#define CHECK_ROW(type, name) \
+    check_allocation(device, shift, #name, scene.name.size() * sizeof(type));
     SCENE_BUFFERS(CHECK_ROW)
 #undef CHECK_ROW
     Plan plan;
@@ -162,22 +277,33 @@ Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory
     plan.structure_bytes = structure_bytes(scene);
     const size_t taken = plan.scene_bytes + plan.structure_bytes;
     const size_t budget = std::min(memory_bytes, device.memory_bytes);
-    if (budget < taken + item_bytes(scene))
+    const auto needed = [&](int results_a_slot) {
+        return slots_bytes(scene) + size_t(listed_items(1, results_a_slot)) * listed_bytes(scene);
+    };
+    const size_t least = needed(least_results_per_slot);
+    if (budget < taken + least)
         throw std::runtime_error(
             "opencl: " + device.name + ": " + megabytes(budget) + " do not hold the scene (" +
-            megabytes(taken) + ") and one block of paths (" + megabytes(item_bytes(scene)) + "); " +
+            megabytes(taken) + ") and one block of paths (" + megabytes(least) + "); " +
             (budget < memory_bytes ? "choose a device with more memory" : "raise --memory"));
-    const size_t widest = widest_buffer(scene);
-    if (device.largest_allocation < widest)
+    const size_t narrowest = widest_buffer(scene, least_results_per_slot);
+    if (device.largest_allocation < narrowest)
         throw std::runtime_error("opencl: " + device.name + ": allocates at most " +
                                  megabytes(device.largest_allocation) +
-                                 " at once, one block of paths needs " + megabytes(widest) +
+                                 " at once, one block of paths needs " + megabytes(narrowest) +
                                  "; choose another device or --backend cpu");
     const int most = device.is_cpu ? most_items_of_cpu : most_items;
-    const size_t items = std::min(
-        {(budget - taken) / item_bytes(scene), device.largest_allocation / widest, size_t(most)});
-    plan.items = int(std::max<size_t>(items, 1));
-    plan.path_bytes = size_t(plan.items) * item_bytes(scene);
+    const auto items_of = [&](int results_a_slot) {
+        return int(std::min({(budget - taken) / needed(results_a_slot),
+                             device.largest_allocation / widest_buffer(scene, results_a_slot),
+                             size_t(most)}));
+    };
+    const int results_a_slot =
+        items_of(results_per_slot) > 0 ? results_per_slot : least_results_per_slot;
+    plan.items = items_of(results_a_slot);
+    plan.most_items = listed_items(plan.items, results_a_slot);
+    plan.path_bytes =
+        size_t(plan.items) * slots_bytes(scene) + size_t(plan.most_items) * listed_bytes(scene);
     return plan;
 }
 

@@ -1,6 +1,7 @@
 #include "backends/opencl_programs.hpp"
 
 #include "backends/kernel_sources.hpp"
+#include "backends/opencl_memory.hpp"
 #include "backends/sha256.hpp"
 #include "backends/textures/native_stage.hpp"
 #include "backends/textures/texture_source.hpp"
@@ -78,10 +79,11 @@ void store(const Built& built, Stage stage, ProgramCache& cache)
 }  // namespace
 
 std::string program_options(const DeviceInfo& device, const BackendOptions& options,
-                            unsigned effects)
+                            const SceneData& scene)
 {
-    std::string text = "-cl-std=CL1.2 -D EFFECTS=" + std::to_string(effects) +
-                       " -D GROUP_SIZE=" + std::to_string(device.group_size);
+    std::string text = "-cl-std=CL1.2 -D EFFECTS=" + std::to_string(scene.effects) +
+                       " -D GROUP_SIZE=" + std::to_string(device.group_size) +
+                       " -D PAGE_SHIFT=" + std::to_string(page_shift(device, scene));
     text += fault_option(options.plant_fault);
     if (options.fast_math)
         text += " -cl-fast-relaxed-math -cl-mad-enable";
@@ -95,7 +97,7 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
                           ProgramCache& cache)
 {
     const unsigned effects = scene.effects;
-    const std::string flags = program_options(device, options, effects);
+    const std::string flags = program_options(device, options, scene);
     // one after the other, for drivers whose compiler does not stand threads (Oclgrind)
     const auto how = options.threads == 1 ? std::launch::deferred : std::launch::async;
     std::array<std::future<Built>, STAGE_COUNT> jobs;
@@ -124,7 +126,7 @@ opencl::Program build_texture_program(const opencl::Context& context, const Devi
 {
     const Stage stage = STAGE_evaluate_textures;
     Built built = build(context, device, source_for(stage, options, scene),
-                        program_options(device, options, scene.effects), stage_names[stage], cache);
+                        program_options(device, options, scene), stage_names[stage], cache);
     store(built, stage, cache);
     return std::move(*built.program);
 }

@@ -11,9 +11,9 @@
 
 namespace diptych {
 
-// The compiler's options: language, effects, exactness, planted fault.
+// The compiler's options: language, effects, pages of large buffers, exactness, planted fault.
 std::string program_options(const DeviceInfo& device, const BackendOptions& options,
-                            unsigned effects);
+                            const SceneData& scene);
 
 struct ProgramSet {
     std::array<std::optional<opencl::Program>, STAGE_COUNT> programs;  // none: not active

@@ -21,7 +21,7 @@ SHARED uint alpha_seed(uint seed, int pixel, int sample, int depth, int purpose)
 // Whether a texture gives the surface's alpha, so that it has to be asked.
 SHARED int alpha_is_asked(const Scene* scene, int triangle)
 {
-    const int material = scene->triangles[triangle].material;
+    const int material = ROW_AT(scene, triangles, triangle).material;
     return scene->materials[material].texture_program[PROGRAM_ALPHA] != 0;
 }
 
@@ -29,7 +29,7 @@ SHARED int alpha_is_asked(const Scene* scene, int triangle)
 // average.
 SHARED int alpha_stops(const Scene* scene, int instance, int triangle, float alpha, uint seed)
 {
-    const int material = scene->triangles[triangle].material;
+    const int material = ROW_AT(scene, triangles, triangle).material;
     const int mode = scene->materials[material].alpha_mode;
     const uint bits = hash_pair(hash_pair(seed, (uint)instance), (uint)triangle);
     const float threshold = mode == ALPHA_MASK ? scene->materials[material].alpha_cutoff

@@ -26,6 +26,22 @@
     X(BvhNode, bvh_nodes)         \
     X(int, bvh_items)
 
+// Those of them that may be larger than a device allocates at once: read through
+// ROW_AT(scene, name, index) alone. X(element type, name, log2 of its bytes)
+#define LARGE_BUFFERS(X)        \
+    X(float4, positions, 4)     \
+    X(uint, normals, 2)         \
+    X(uint, tangents, 2)        \
+    X(float2, uvs, 3)           \
+    X(float4, colors, 4)        \
+    X(Triangle, triangles, 4)   \
+    X(int, triangle_objects, 2) \
+    X(uint, texels_8, 2)        \
+    X(float4, texels_float, 4)  \
+    X(BvhNode, bvh_nodes, 6)    \
+    X(int, bvh_items, 2)
+#define LARGE_PAGES 4  // of each, at most; the dialect of OpenCL names them one by one
+
 // State of the paths in flight, in planes: one array per component. X(type, name, life)
 //   carried: lives from bounce to bounce, moves when live paths are compacted
 //   bounce:  written and read within one bounce
@@ -33,6 +49,7 @@
 #define PATH_BUFFERS(X)                   \
     X(int, pixel, carried)                \
     X(int, sample, carried)               \
+    X(int, entry, carried)                \
     X(int, depth, carried)                \
     X(float3, ray_origin, carried)        \
     X(float3, ray_direction, carried)     \
@@ -116,12 +133,16 @@
 typedef struct {
     uint effects;  // mask of EFFECT_*; read it through uses()
     SCENE_BUFFERS(SCENE_FIELD)
+    LARGE_BUFFERS(LARGE_FIELD)
 } Scene;
+LARGE_BUFFERS(LARGE_ACCESS)
 
-// The paths of a dispatch, or of a chunk of one, as a kernel sees them. Path i of a dispatch
-// belongs to work item i / (samples << pixel_shift), sample (i >> pixel_shift) % samples of it, and
-// pixel i % (1 << pixel_shift). A path is alive while its depth, the number of its scattering
-// events, is not negative.
+// The paths of a dispatch, or of a chunk of one, as a kernel sees them. `entry` says where the
+// result of path i is summed, and with it the path's work item, entry >> pixel_shift, and its pixel
+// there, the rest. Where each path has a place of its own, path i belongs to work item
+// i / (samples << pixel_shift), sample (i >> pixel_shift) % samples of it, and pixel
+// i % (1 << pixel_shift). A path is alive while its depth, the number of its scattering events, is
+// not negative.
 typedef struct {
     int capacity;     // paths; the distance between the planes of a float3
     int results;      // result entries; likewise

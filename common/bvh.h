@@ -104,9 +104,9 @@ SHARED float bvh_box_entry(const BvhRay* ray, float3 low, float3 high, float t_m
 
 SHARED float bvh_child_entry(const Scene* scene, const BvhRay* ray, int node, int k, float t_max)
 {
-    const STORED(float4) x = scene->bvh_nodes[node].x;
-    const STORED(float4) y = scene->bvh_nodes[node].y;
-    const STORED(float4) z = scene->bvh_nodes[node].z;
+    const STORED(float4) x = ROW_AT(scene, bvh_nodes, node).x;
+    const STORED(float4) y = ROW_AT(scene, bvh_nodes, node).y;
+    const STORED(float4) z = ROW_AT(scene, bvh_nodes, node).z;
     const float3 low = make_float3(k ? x.z : x.x, k ? y.z : y.x, k ? z.z : z.x);
     const float3 high = make_float3(k ? x.w : x.y, k ? y.w : y.y, k ? z.w : z.y);
     return bvh_box_entry(ray, low, high, t_max);
@@ -116,7 +116,7 @@ SHARED int bvh_is_transparent(const Scene* scene, Hit hit, TriangleHit at, BvhAl
 {
     if (!uses(scene, EFFECT_ALPHA)) return 0;
     if (uses(scene, EFFECT_PROCEDURAL_ALPHA) && !bvh_is_behind(hit, alpha.passed)) return 1;
-    const int material = scene->triangles[hit.triangle].material;
+    const int material = ROW_AT(scene, triangles, hit.triangle).material;
     if (scene->materials[material].alpha_mode == ALPHA_OPAQUE) return 0;
     return !alpha_accepts(scene, hit.instance, hit.triangle, at.u, at.v, alpha.seed);
 }
@@ -135,8 +135,8 @@ SHARED Hit bvh_leaf(const Scene* scene, const BvhRay* ray, int leaf, Hit best, i
     const int first = BVH_LEAF_FIRST(leaf);
     const int count = BVH_LEAF_COUNT(leaf);
     for (int k = 0; k < count; ++k) {
-        const int id = scene->bvh_items[first + k];
-        const STORED(Triangle) triangle = scene->triangles[id];
+        const int id = ROW_AT(scene, bvh_items, first + k);
+        const STORED(Triangle) triangle = ROW_AT(scene, triangles, id);
         const TriangleHit at =
             triangle_intersect(ray->triangle, vertex_position(scene, triangle.vertex0),
                                vertex_position(scene, triangle.vertex1),
@@ -161,8 +161,8 @@ SHARED BvhStep bvh_visit(const Scene* scene, const BvhRay* ray, int node, float 
 {
     const float entry0 = bvh_child_entry(scene, ray, node, 0, t_max);
     const float entry1 = bvh_child_entry(scene, ray, node, 1, t_max);
-    const int child0 = entry0 >= 0.0f ? scene->bvh_nodes[node].child[0] : BVH_NONE;
-    const int child1 = entry1 >= 0.0f ? scene->bvh_nodes[node].child[1] : BVH_NONE;
+    const int child0 = entry0 >= 0.0f ? ROW_AT(scene, bvh_nodes, node).child[0] : BVH_NONE;
+    const int child1 = entry1 >= 0.0f ? ROW_AT(scene, bvh_nodes, node).child[1] : BVH_NONE;
     const int is_swapped = child0 == BVH_NONE || (child1 != BVH_NONE && entry1 < entry0);
     BvhStep step;
     step.next = is_swapped ? child1 : child0;
@@ -200,7 +200,7 @@ SHARED Hit bvh_walk(const Scene* scene, float3 origin, float3 direction, float t
                 ++size;
             }
         } else if (base == BVH_TOP_LEVEL) {
-            instance = scene->bvh_items[BVH_LEAF_FIRST(next)];
+            instance = ROW_AT(scene, bvh_items, BVH_LEAF_FIRST(next));
             ray = bvh_object_ray(scene, instance, origin, direction);
             base = size;
             next = scene->instances[instance].root_node;

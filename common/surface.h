@@ -60,15 +60,15 @@ SHARED float3 normal_to_world(const Scene* scene, int instance, float3 n)
 
 SHARED float3 vertex_position(const Scene* scene, int vertex)
 {
-    return make_float3(scene->positions[vertex].x, scene->positions[vertex].y,
-                       scene->positions[vertex].z);
+    return make_float3(ROW_AT(scene, positions, vertex).x, ROW_AT(scene, positions, vertex).y,
+                       ROW_AT(scene, positions, vertex).z);
 }
 
 SHARED WorldTriangle world_triangle(const Scene* scene, int instance, int triangle)
 {
-    float3 a = vertex_position(scene, scene->triangles[triangle].vertex0);
-    float3 b = vertex_position(scene, scene->triangles[triangle].vertex1);
-    float3 c = vertex_position(scene, scene->triangles[triangle].vertex2);
+    float3 a = vertex_position(scene, ROW_AT(scene, triangles, triangle).vertex0);
+    float3 b = vertex_position(scene, ROW_AT(scene, triangles, triangle).vertex1);
+    float3 c = vertex_position(scene, ROW_AT(scene, triangles, triangle).vertex2);
     float translation = 0.0f;
     if (uses(scene, EFFECT_INSTANCES)) {
         a = point_to_world(scene, instance, a);
@@ -128,11 +128,13 @@ SHARED float2 surface_uv(const Scene* scene, int triangle, float2 weights, int s
 {
     const int set = scene->texture_slots[slot < 0 ? 0 : slot].uv_set;
     const int sets = scene->settings[0].uv_set_count;
-    const int a = scene->triangles[triangle].vertex0 * sets + set;
-    const int b = scene->triangles[triangle].vertex1 * sets + set;
-    const int c = scene->triangles[triangle].vertex2 * sets + set;
-    return make_float2(interpolate(scene->uvs[a].x, scene->uvs[b].x, scene->uvs[c].x, weights),
-                       interpolate(scene->uvs[a].y, scene->uvs[b].y, scene->uvs[c].y, weights));
+    const int a = ROW_AT(scene, triangles, triangle).vertex0 * sets + set;
+    const int b = ROW_AT(scene, triangles, triangle).vertex1 * sets + set;
+    const int c = ROW_AT(scene, triangles, triangle).vertex2 * sets + set;
+    return make_float2(interpolate(ROW_AT(scene, uvs, a).x, ROW_AT(scene, uvs, b).x,
+                                   ROW_AT(scene, uvs, c).x, weights),
+                       interpolate(ROW_AT(scene, uvs, a).y, ROW_AT(scene, uvs, b).y,
+                                   ROW_AT(scene, uvs, c).y, weights));
 }
 
 SHARED float4 surface_texture(const Scene* scene, int triangle, float2 weights, int slot)
@@ -142,21 +144,24 @@ SHARED float4 surface_texture(const Scene* scene, int triangle, float2 weights, 
 
 SHARED float4 surface_vertex_color(const Scene* scene, int triangle, float2 weights)
 {
-    const int a = scene->triangles[triangle].vertex0;
-    const int b = scene->triangles[triangle].vertex1;
-    const int c = scene->triangles[triangle].vertex2;
-    return make_float4(
-        interpolate(scene->colors[a].x, scene->colors[b].x, scene->colors[c].x, weights),
-        interpolate(scene->colors[a].y, scene->colors[b].y, scene->colors[c].y, weights),
-        interpolate(scene->colors[a].z, scene->colors[b].z, scene->colors[c].z, weights),
-        interpolate(scene->colors[a].w, scene->colors[b].w, scene->colors[c].w, weights));
+    const int a = ROW_AT(scene, triangles, triangle).vertex0;
+    const int b = ROW_AT(scene, triangles, triangle).vertex1;
+    const int c = ROW_AT(scene, triangles, triangle).vertex2;
+    return make_float4(interpolate(ROW_AT(scene, colors, a).x, ROW_AT(scene, colors, b).x,
+                                   ROW_AT(scene, colors, c).x, weights),
+                       interpolate(ROW_AT(scene, colors, a).y, ROW_AT(scene, colors, b).y,
+                                   ROW_AT(scene, colors, c).y, weights),
+                       interpolate(ROW_AT(scene, colors, a).z, ROW_AT(scene, colors, b).z,
+                                   ROW_AT(scene, colors, c).z, weights),
+                       interpolate(ROW_AT(scene, colors, a).w, ROW_AT(scene, colors, b).w,
+                                   ROW_AT(scene, colors, c).w, weights));
 }
 
 // Base colour and alpha: factor, texture and vertex colour multiplied (glTF 2.0, 3.9.2); `texel` is
 // what the texture gives.
 SHARED float4 surface_colored(const Scene* scene, int triangle, float2 weights, float4 texel)
 {
-    const int material = scene->triangles[triangle].material;
+    const int material = ROW_AT(scene, triangles, triangle).material;
     const float4 factor = make_float4(
         scene->materials[material].base_color.x, scene->materials[material].base_color.y,
         scene->materials[material].base_color.z, scene->materials[material].base_color.w);
@@ -170,7 +175,7 @@ SHARED float4 surface_base_color(const Scene* scene, int triangle, float2 weight
 {
     float4 texel = make_float4(1.0f, 1.0f, 1.0f, 1.0f);
     if (uses(scene, EFFECT_BASE_TEXTURE)) {
-        const int material = scene->triangles[triangle].material;
+        const int material = ROW_AT(scene, triangles, triangle).material;
         const int slot = scene->materials[material].base_slot;
         texel = surface_texture(scene, triangle, weights, slot);
     }
@@ -179,7 +184,7 @@ SHARED float4 surface_base_color(const Scene* scene, int triangle, float2 weight
 
 SHARED float3 vertex_normal(const Scene* scene, int vertex, float3 otherwise)
 {
-    const uint packed = scene->normals[vertex];
+    const uint packed = ROW_AT(scene, normals, vertex);
     const float3 normal = normal_unpack(packed);
     const int is_flat = packed == NORMAL_FLAT;
     return make_float3(is_flat ? otherwise.x : normal.x, is_flat ? otherwise.y : normal.y,
@@ -192,9 +197,9 @@ SHARED float3 surface_smooth_normal(const Scene* scene, int instance, int triang
                                     float3 face_normal)
 {
     const float3 zero = make_float3(0.0f, 0.0f, 0.0f);
-    const float3 a = vertex_normal(scene, scene->triangles[triangle].vertex0, zero);
-    const float3 b = vertex_normal(scene, scene->triangles[triangle].vertex1, zero);
-    const float3 c = vertex_normal(scene, scene->triangles[triangle].vertex2, zero);
+    const float3 a = vertex_normal(scene, ROW_AT(scene, triangles, triangle).vertex0, zero);
+    const float3 b = vertex_normal(scene, ROW_AT(scene, triangles, triangle).vertex1, zero);
+    const float3 c = vertex_normal(scene, ROW_AT(scene, triangles, triangle).vertex2, zero);
     float3 n = make_float3(interpolate(a.x, b.x, c.x, weights), interpolate(a.y, b.y, c.y, weights),
                            interpolate(a.z, b.z, c.z, weights));
     if (uses(scene, EFFECT_INSTANCES)) n = normal_to_world(scene, instance, n);
@@ -209,9 +214,12 @@ SHARED float3 surface_smooth_normal(const Scene* scene, int instance, int triang
 // The low bit of a packed tangent is its handedness in its mesh's own space: 1 for -1.
 SHARED float3 surface_tangent(const Scene* scene, int instance, int triangle, float2 weights)
 {
-    const float3 a = normal_unpack(scene->tangents[scene->triangles[triangle].vertex0]);
-    const float3 b = normal_unpack(scene->tangents[scene->triangles[triangle].vertex1]);
-    const float3 c = normal_unpack(scene->tangents[scene->triangles[triangle].vertex2]);
+    const float3 a =
+        normal_unpack(ROW_AT(scene, tangents, ROW_AT(scene, triangles, triangle).vertex0));
+    const float3 b =
+        normal_unpack(ROW_AT(scene, tangents, ROW_AT(scene, triangles, triangle).vertex1));
+    const float3 c =
+        normal_unpack(ROW_AT(scene, tangents, ROW_AT(scene, triangles, triangle).vertex2));
     const float3 t =
         make_float3(interpolate(a.x, b.x, c.x, weights), interpolate(a.y, b.y, c.y, weights),
                     interpolate(a.z, b.z, c.z, weights));
@@ -222,7 +230,7 @@ SHARED float3 surface_tangent(const Scene* scene, int instance, int triangle, fl
 SHARED float3 surface_mapped_normal(const Scene* scene, int instance, int triangle, float2 weights,
                                     float3 n, float4 texel)
 {
-    const int material = scene->triangles[triangle].material;
+    const int material = ROW_AT(scene, triangles, triangle).material;
     const int slot = scene->materials[material].normal_slot;
     const float scale = scene->materials[material].normal_scale;
     const float x = (2.0f * texel.x - 1.0f) * scale;
@@ -232,7 +240,7 @@ SHARED float3 surface_mapped_normal(const Scene* scene, int instance, int triang
     const float3 raw = surface_tangent(scene, instance, triangle, weights);
     const float3 t = raw - n * vec_dot(n, raw);
     const float t_length2 = vec_dot(t, t);
-    const uint packed = scene->tangents[scene->triangles[triangle].vertex0];
+    const uint packed = ROW_AT(scene, tangents, ROW_AT(scene, triangles, triangle).vertex0);
     float handedness = (packed & 1u) != 0u ? -1.0f : 1.0f;
     if (uses(scene, EFFECT_INSTANCES))  // a mirror image of a right-handed frame is left-handed
         handedness = scene->instances[instance].is_mirrored ? -handedness : handedness;

@@ -1,4 +1,4 @@
-// The list of live paths for the next bounce, in ascending order: each work-group counts, one sums
+// Lists of live paths, or of free slots, in ascending order: each work-group counts, one sums
 // the counts, each writes at its place. No atomics, so that the order is the same in every run.
 #include "platform.h"
 
@@ -29,14 +29,15 @@ static int path_at(__global const int* live, int is_compacted, int k, int count)
     return is_compacted ? live[last] : last;
 }
 
-// sums[g]: live paths in work-group g.
+// sums[g]: paths to be listed in work-group g. Those are listed whose depth is not negative, or, if
+// not wants_live, the others.
 GROUP_KERNEL void compact_count(__global const int* depth, __global const int* live,
-                                int is_compacted, int count, __global int* sums)
+                                int is_compacted, int count, __global int* sums, int wants_live)
 {
     __local int scratch[2 * GROUP_SIZE];
     const int k = (int)get_global_id(0);
-    const int is_alive = k < count && depth[path_at(live, is_compacted, k, count)] >= 0;
-    const int sum = group_sum(is_alive, scratch);
+    const int is_alive = depth[path_at(live, is_compacted, k, count)] >= 0;
+    const int sum = group_sum(k < count && is_alive == wants_live, scratch);
     if (get_local_id(0) == GROUP_SIZE - 1) sums[get_group_id(0)] = sum;
 }
 
@@ -61,12 +62,12 @@ GROUP_KERNEL void compact_scan(__global int* sums, int groups, __global int* tot
 
 GROUP_KERNEL void compact_write(__global const int* depth, __global const int* live,
                                 int is_compacted, int count, __global const int* sums,
-                                __global int* next_live)
+                                int wants_live, __global int* listed)
 {
     __local int scratch[2 * GROUP_SIZE];
     const int k = (int)get_global_id(0);
     const int path = path_at(live, is_compacted, k, count);
-    const int is_alive = k < count && depth[path] >= 0;
-    const int rank = group_sum(is_alive, scratch);
-    if (is_alive) next_live[sums[get_group_id(0)] + rank - 1] = path;
+    const int is_listed = k < count && (depth[path] >= 0) == wants_live;
+    const int rank = group_sum(is_listed, scratch);
+    if (is_listed) listed[sums[get_group_id(0)] + rank - 1] = path;
 }

@@ -18,9 +18,14 @@
 #define RUN_once(stage, k) stage(&scene, &paths, k)
 #define RUN_each_bounce(stage, k) stage(&scene, &paths, is_compacted ? live[k] : k)
 #define RUN_each_layer(stage, k) RUN_each_bounce(stage, k)
-#define RUN_first_bounce(stage, k) RUN_each_bounce(stage, k)
-#define RUN_at_end(stage, k) \
-    for (; paths.turn < samples; ++paths.turn) stage(&scene, &paths, k)
+#define RUN_first_bounce(stage, k)               \
+    const int slot = is_compacted ? live[k] : k; \
+    if (next_entry == EVERY_PATH || get_depth(&paths, slot) == 0) stage(&scene, &paths, slot)
+#define RUN_at_end_(stage, k)                    \
+    const int slot = is_compacted ? live[k] : k; \
+    if (has_ended(&paths, slot))                 \
+    stage##_path(&scene, &paths, slot, get_entry(&paths, slot), get_sample(&paths, slot))
+#define RUN_at_end(stage, k) RUN_at_end_(stage, k)
 #define RUN_(when, stage, k) RUN_##when(stage, k)
 #define RUN(when, stage, k) RUN_(when, stage, k)
 

@@ -14,6 +14,7 @@ namespace {
 // Planes a power of two apart would fall into the same few cache sets.
 constexpr int padding = 16;
 constexpr int capacity = chunk_paths + padding;
+constexpr int packet = 16;  // paths that Embree takes at once, at most
 
 // Compaction costs about as much as a stage on a tenth of the paths.
 bool is_worth_compacting(int live, int count) { return live <= count - count / 8; }
@@ -113,7 +114,10 @@ void Chunk::trace_paths(int count)
     for (int i = 0; i < count; ++i) slots_[i] = i;
     bounce_ = 0;
     run_stage(STAGE_generate_paths, count);
+    alive_ = count;
     for (int live = count; live > 0; ++bounce_) {
+        slot_steps += std::uint64_t((live + packet - 1) / packet * packet);
+        busy_steps += std::uint64_t(alive_);
         for_stages_of_bounce(scene_.effects, bounce_, [&](Stage stage) { run_stage(stage, live); });
         live = compact(live);
     }
@@ -154,6 +158,7 @@ int Chunk::compact(int count)
         live_[live] = i;
         live += depth[i] >= 0 ? 1 : 0;
     }
+    alive_ = live;
     int remaining = count;
     if (live == 0) {
         retire(count);

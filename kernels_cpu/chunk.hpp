@@ -24,11 +24,16 @@ public:
     // the planes in `results`. results.samples is the number of samples in the item.
     void run(const PathView& results, int first_result, const void* item);
 
+    size_t bytes() const { return memory_.size(); }
+
     std::array<double, STAGE_COUNT> stage_seconds{};
     std::uint64_t rays = 0;
     std::uint64_t shadow_rays = 0;
     std::uint64_t undecided_rays = 0;
     std::uint64_t paths = 0;
+    // Over all bounces: lanes of packets, and those of them with a live path.
+    std::uint64_t slot_steps = 0;
+    std::uint64_t busy_steps = 0;
 
 private:
     void run_stage(Stage stage, int count);
@@ -49,6 +54,7 @@ private:
     PathView view_;
     RecordViews records_;
     int bounce_ = 0;
+    int alive_ = 0;  // paths, at the beginning of the bounce
 };
 
 }  // namespace diptych

@@ -31,7 +31,6 @@ public:
         }
         view_.capacity = int(count_);
         view_.results = 1;
-        view_.samples = int(count_) + 1;
         view_.items = &item_;
         view_.texture_result_planes = texture_result_planes_.data();
         view_.lookup = LOOKUP_EMISSION;

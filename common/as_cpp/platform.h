@@ -26,6 +26,11 @@
 
 #define uses(scene, effect) (((scene)->effects & (effect)) != 0)
 
+// Rows of LARGE_BUFFERS are whole here.
+#define LARGE_FIELD(type, name, log_bytes)
+#define LARGE_ACCESS(type, name, log_bytes)
+#define ROW_AT(scene, name, index) ((scene)->name[index])
+
 #include "common/as_cpp/vector_types.h"
 #include "common/as_cpp/vectors.h"
 

@@ -27,6 +27,11 @@
 
 #define uses(scene, effect) (((scene)->effects & (effect)) != 0)
 
+// Rows of LARGE_BUFFERS are whole here.
+#define LARGE_FIELD(type, name, log_bytes)
+#define LARGE_ACCESS(type, name, log_bytes)
+#define ROW_AT(scene, name, index) ((scene)->name[index])
+
 // What memory holds stays single precision (namespace stored); reading it widens, exactly.
 #define STORED(type) STORED_##type
 namespace stored {

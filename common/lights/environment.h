@@ -57,12 +57,13 @@ SHARED float3 environment_texel(const Scene* scene, float2 uv)
     const float w10 = fx * (1.0f - fy);
     const float w01 = (1.0f - fx) * fy;
     const float w11 = fx * fy;
-    return make_float3(scene->texels_float[k00].x * w00 + scene->texels_float[k10].x * w10 +
-                           scene->texels_float[k01].x * w01 + scene->texels_float[k11].x * w11,
-                       scene->texels_float[k00].y * w00 + scene->texels_float[k10].y * w10 +
-                           scene->texels_float[k01].y * w01 + scene->texels_float[k11].y * w11,
-                       scene->texels_float[k00].z * w00 + scene->texels_float[k10].z * w10 +
-                           scene->texels_float[k01].z * w01 + scene->texels_float[k11].z * w11);
+    return make_float3(
+        ROW_AT(scene, texels_float, k00).x * w00 + ROW_AT(scene, texels_float, k10).x * w10 +
+            ROW_AT(scene, texels_float, k01).x * w01 + ROW_AT(scene, texels_float, k11).x * w11,
+        ROW_AT(scene, texels_float, k00).y * w00 + ROW_AT(scene, texels_float, k10).y * w10 +
+            ROW_AT(scene, texels_float, k01).y * w01 + ROW_AT(scene, texels_float, k11).y * w11,
+        ROW_AT(scene, texels_float, k00).z * w00 + ROW_AT(scene, texels_float, k10).z * w10 +
+            ROW_AT(scene, texels_float, k01).z * w01 + ROW_AT(scene, texels_float, k11).z * w11);
 }
 
 SHARED float3 environment_radiance(const Scene* scene, float2 uv)

@@ -44,7 +44,7 @@ SHARED LightSample triangle_light_sample(const Scene* scene, int light, float3 f
                                   scene->lights[light].emission.z);
     if (uses(scene, EFFECT_EMISSION_TEXTURE)) {
         const int triangle = scene->lights[light].triangle;
-        const int material = scene->triangles[triangle].material;
+        const int material = ROW_AT(scene, triangles, triangle).material;
         const int slot = scene->materials[material].emission_slot;
         const float4 texel = surface_texture(scene, triangle, weights, slot);
         radiance = make_float3(scene->materials[material].emission.x * texel.x,

@@ -95,7 +95,7 @@ SHARED void evaluate_surface(const Scene* scene, const Paths* paths, int i)
     const int is_hit = hit >= 0;
     const int triangle = is_hit ? hit : 0;
     const int instance = is_hit ? get_hit_instance(paths, i) : 0;
-    const int material = scene->triangles[triangle].material;
+    const int material = ROW_AT(scene, triangles, triangle).material;
 
     const WorldTriangle world = world_triangle(scene, instance, triangle);
     const float2 weights = triangle_barycentrics(world, origin, direction);

@@ -1,17 +1,15 @@
-// Starts every path of a dispatch at the camera: which pixel, which sample, which ray.
+// Starts paths at the camera: which pixel, which sample, which ray.
 #pragma once
 
 #include "common/camera.h"
 #include "common/filter.h"
 #include "common/random.h"
 
-SHARED void generate_paths(const Scene* scene, const Paths* paths, int i)
+// Path i becomes a sample of a pixel: of a work item, and of its samples the one numbered
+// `in_quantum`.
+SHARED void generate_path(const Scene* scene, const Paths* paths, int i, int item, int in_item,
+                          int in_quantum)
 {
-    const int in_item = i & ((1 << paths->pixel_shift) - 1);
-    const int sample_of_all = i >> paths->pixel_shift;
-    const int item = (int)((float)sample_of_all * (1.0f / (float)paths->samples));
-    const int in_quantum = sample_of_all & (paths->samples - 1);
-
     const int x = paths->items[item].x + compact_bits((uint)in_item);
     const int y = paths->items[item].y + compact_bits((uint)in_item >> 1);
     const int sample = paths->items[item].first_sample + in_quantum;
@@ -25,10 +23,21 @@ SHARED void generate_paths(const Scene* scene, const Paths* paths, int i)
 
     set_pixel(paths, i, pixel);
     set_sample(paths, i, sample);
+    set_entry(paths, i, item << paths->pixel_shift | in_item);
     set_depth(paths, i, is_inside ? 0 : -1);
     set_ray_origin(paths, i, ray.origin);
     set_ray_direction(paths, i, ray.direction);
     set_scatter_pdf(paths, i, 0.0f);
     set_throughput(paths, i, make_float3(1.0f, 1.0f, 1.0f));
     set_radiance(paths, i, make_float3(0.0f, 0.0f, 0.0f));
+}
+
+// Every path of a dispatch at once.
+SHARED void generate_paths(const Scene* scene, const Paths* paths, int i)
+{
+    const int in_item = i & ((1 << paths->pixel_shift) - 1);
+    const int sample_of_all = i >> paths->pixel_shift;
+    const int item = (int)((float)sample_of_all * (1.0f / (float)paths->samples));
+    const int in_quantum = sample_of_all & (paths->samples - 1);
+    generate_path(scene, paths, i, item, in_item, in_quantum);
 }

@@ -8,12 +8,12 @@ SHARED void record_features(const Scene* scene, const Paths* paths, int i)
     const int kind = get_surface_kind(paths, i);
     const int is_hit = kind != SURFACE_NONE;
     const int triangle = get_hit_triangle(paths, i);
-    const int material = scene->triangles[triangle & -is_hit].material;
+    const int material = ROW_AT(scene, triangles, triangle & -is_hit).material;
     // Meshes that appear once lie together in instance 0, which therefore keeps a number a
     // triangle. Masks, not selects: a select would make the loads conditional.
     const int instance = get_hit_instance(paths, i) & -is_hit;
     const int is_merged = -(is_hit & (instance == 0));
-    const int merged = scene->triangle_objects[triangle & is_merged];
+    const int merged = ROW_AT(scene, triangle_objects, triangle & is_merged);
     const int placed = scene->instances[instance].object;
     const int object = placed ^ ((placed ^ merged) & is_merged);
     const float3 none = make_float3(0.0f, 0.0f, 0.0f);

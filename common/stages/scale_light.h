@@ -11,8 +11,8 @@ SHARED void record_light(const Scene* scene, const Paths* paths, int i, int ligh
     const int is_triangle = scene->lights[light].kind == LIGHT_TRIANGLE;
     const int triangle = scene->lights[light].triangle;
     const int instance = scene->lights[light].instance;
-    const int program =
-        scene->materials[scene->triangles[triangle].material].texture_program[PROGRAM_EMISSION];
+    const int program = scene->materials[ROW_AT(scene, triangles, triangle).material]
+                            .texture_program[PROGRAM_EMISSION];
     const int is_asked = is_triangle & (program != 0) & (vec_max_component(contribution) > 0.0f);
     set_record_triangle(paths, 0, i, is_asked ? triangle : -1);
     set_record_instance(paths, 0, i, instance);

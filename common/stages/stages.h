@@ -10,7 +10,9 @@
 //         native - written for each kind of device
 //   when: once - at the start; each_bounce - until no path is alive; first_bounce - in the first of
 //         these only, at its place in the order; at_end -
-//         over result entries, not paths, once for each of Paths::samples with Paths::turn counting up
+//         over result entries, not paths, once for each of Paths::samples with Paths::turn counting
+//         up; its NAME_path(scene, paths, i, result, sample) is the same for one path, where paths end one
+//         by one
 //         each_layer - of surfaces whose alpha a texture gives: between the rounds of intersect
 //         and of occlusion
 //   needs: effects of which the scene must call for one, else the stage is neither compiled nor

@@ -88,7 +88,7 @@ SHARED int texture_program_of(const Scene* scene, const Paths* paths, int i)
     const int hit = get_hit_triangle(paths, i);
     const int triangle = hit < 0 ? 0 : hit;
     const int program =
-        scene->materials[scene->triangles[triangle].material].texture_program[which];
+        scene->materials[ROW_AT(scene, triangles, triangle).material].texture_program[which];
     const int is_dead = (hit < 0) | (get_depth(paths, i) < 0);
     return is_dead ? 0 : program;
 }
@@ -232,21 +232,10 @@ SHARED int texture_verdict(const TextureContext* tx, TextureValue v)
     return (texture_is_finite(v) ? 0 : 1) | (tx->fault_line != 0 ? 2 : 0) | clamped << 2;
 }
 
-// Where the result of path i is summed, wherever compaction has put the path: on a device that
-// closes ranks, all paths are of one work item.
-SHARED int texture_result_entry(const Paths* paths, int i)
-{
-    const int item = (int)((float)(i >> paths->pixel_shift) * (1.0f / (float)paths->samples));
-    const uint pixel = (uint)get_pixel(paths, i);
-    const int x = (int)(pixel & 0xffffu) - paths->items[item].x;
-    const int y = (int)(pixel >> 16) - paths->items[item].y;
-    return item << paths->pixel_shift | (int)morton_code(x, y);
-}
-
 // Counts what was wrong for the pixel of path i. Sums of integers are the same in any order.
 SHARED void texture_count(const Paths* paths, int i, int verdict)
 {
-    const int entry = texture_result_entry(paths, i);
+    const int entry = get_entry(paths, i);
     const int counts[TEXTURE_FAULT_COUNT] = {verdict & 1, verdict >> 1 & 1, verdict >> 2};
     for (int fault = 0; fault < TEXTURE_FAULT_COUNT; ++fault) {
         if (counts[fault] != 0)

@@ -40,15 +40,15 @@ SHARED float4 texel_from_bytes(uint bytes, int encoding)
 SHARED float4 texel_read(const Scene* scene, int first, int encoding, int index)
 {
     if (!uses(scene, EFFECT_FLOAT_TEXTURES))
-        return texel_from_bytes(scene->texels_8[first + index], encoding);
+        return texel_from_bytes(ROW_AT(scene, texels_8, first + index), encoding);
     const int is_float = encoding == TEXELS_FLOAT;
     const int k = (first + index) & -is_float;
     const float4 bytes =
-        texel_from_bytes(scene->texels_8[(first + index) & (is_float - 1)], encoding);
-    const float r = scene->texels_float[k].x;
-    const float g = scene->texels_float[k].y;
-    const float b = scene->texels_float[k].z;
-    const float a = scene->texels_float[k].w;
+        texel_from_bytes(ROW_AT(scene, texels_8, (first + index) & (is_float - 1)), encoding);
+    const float r = ROW_AT(scene, texels_float, k).x;
+    const float g = ROW_AT(scene, texels_float, k).y;
+    const float b = ROW_AT(scene, texels_float, k).z;
+    const float a = ROW_AT(scene, texels_float, k).w;
     const float f =
         (float)is_float;  // factors, not selects: a select would make the loads conditional
     const float e = 1.0f - f;

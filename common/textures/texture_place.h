@@ -10,12 +10,15 @@ SHARED float2 surface_uv_of_set(const Scene* scene, int triangle, float2 weights
     const int sets = scene->settings[0].uv_set_count;
     const int s = set < 0 ? 0 : set;
     const float known = set < 0 ? 0.0f : 1.0f;
-    const int a = scene->triangles[triangle].vertex0 * sets + s;
-    const int b = scene->triangles[triangle].vertex1 * sets + s;
-    const int c = scene->triangles[triangle].vertex2 * sets + s;
-    return make_float2(
-        interpolate(scene->uvs[a].x, scene->uvs[b].x, scene->uvs[c].x, weights) * known,
-        interpolate(scene->uvs[a].y, scene->uvs[b].y, scene->uvs[c].y, weights) * known);
+    const int a = ROW_AT(scene, triangles, triangle).vertex0 * sets + s;
+    const int b = ROW_AT(scene, triangles, triangle).vertex1 * sets + s;
+    const int c = ROW_AT(scene, triangles, triangle).vertex2 * sets + s;
+    return make_float2(interpolate(ROW_AT(scene, uvs, a).x, ROW_AT(scene, uvs, b).x,
+                                   ROW_AT(scene, uvs, c).x, weights) *
+                           known,
+                       interpolate(ROW_AT(scene, uvs, a).y, ROW_AT(scene, uvs, b).y,
+                                   ROW_AT(scene, uvs, c).y, weights) *
+                           known);
 }
 
 // Where a path's ray has met the surface.
@@ -74,7 +77,7 @@ SHARED TextureFrame texture_frame(const Scene* scene, int instance, int triangle
     const float length2 = vec_dot(along, along);
     const int is_known = length2 > 0.0f;
     const float inverse = is_known ? 1.0f / math_sqrt(length2) : 0.0f;
-    const uint packed = scene->tangents[scene->triangles[triangle].vertex0];
+    const uint packed = ROW_AT(scene, tangents, ROW_AT(scene, triangles, triangle).vertex0);
     float handedness = (packed & 1u) != 0u ? -1.0f : 1.0f;
     if (uses(scene, EFFECT_INSTANCES))
         handedness = scene->instances[instance].is_mirrored ? -handedness : handedness;
@@ -91,7 +94,7 @@ SHARED TextureFrame texture_frame(const Scene* scene, int instance, int triangle
 SHARED int texture_object(const Scene* scene, int instance, int triangle)
 {
     const int is_merged = -(instance == 0);
-    const int merged = scene->triangle_objects[triangle & is_merged];
+    const int merged = ROW_AT(scene, triangle_objects, triangle & is_merged);
     const int placed = scene->instances[instance].object;
     return placed ^ ((placed ^ merged) & is_merged);
 }

@@ -70,8 +70,8 @@ void print_summary(const RenderCommand& command, const RenderResult& result)
     fmt::print(stderr, "{:.2f} s, {:.2f} million samples/s, {:.2f} million rays/s\n",
                result.seconds, double(statistics.paths) / result.seconds * 1e-6,
                rays / result.seconds * 1e-6);
-    fmt::print(stderr, "dispatches {:.1f} % full, scheduling and merging {:.1f} % of the time\n",
-               100 * result.dispatch_fill, 100 * result.scheduling_seconds / result.seconds);
+    fmt::print(stderr, "slots {:.1f} % busy, scheduling and merging {:.1f} % of the time\n",
+               100 * slots_busy(statistics), 100 * result.scheduling_seconds / result.seconds);
     for (const DeviceShare& share : statistics.shares)
         fmt::print(stderr, "{:5.1f} % of the samples: {}{}\n",
                    100 * double(share.paths) / double(std::max(1ull, statistics.paths)),

@@ -70,11 +70,11 @@ void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan
     fmt::print(stderr, "{} x {}, {} samples, {} triangles, {} lights, effects: {}\n",
                settings.width, settings.height, count, scene.triangles.size(), settings.light_count,
                fmt::join(effect_names(scene.effects), " "));
-    fmt::print(
-        stderr,
-        "memory: scene {}, structure about {}, paths {} ({} a dispatch), film {} on the host\n",
-        megabytes(plan.scene_bytes), megabytes(plan.structure_bytes), megabytes(plan.path_bytes),
-        plan.items * QUANTUM << (2 * BLOCK_SHIFT), megabytes(film_bytes(settings, options)));
+    fmt::print(stderr,
+               "memory: scene {}, structure about {}, paths {} ({} at once), film {} on the host\n",
+               megabytes(plan.scene_bytes), megabytes(plan.structure_bytes),
+               megabytes(plan.path_bytes), plan.items * QUANTUM << (2 * BLOCK_SHIFT),
+               megabytes(film_bytes(settings, options)));
 }
 
 ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -131,6 +131,12 @@ std::optional<FaultPlace> find_fault(Backend& backend, const Faults& faults, int
     return place;
 }
 
+double slots_busy(const Statistics& statistics)
+{
+    const double slots = double(std::max(1ull, statistics.slot_steps));
+    return double(statistics.busy_steps) / slots;
+}
+
 std::string scene_hash(const SceneData& scene)
 {
     Sha256 hash;
@@ -170,12 +176,13 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
          {{"scene", result.plan.scene_bytes},
           {"structure", result.plan.structure_bytes},
           {"paths", result.plan.path_bytes},
+          {"allocated", statistics.allocated_bytes},
           {"film", Film::bytes(result.film.data().window, result.film.data().batches)}}},
         {"dispatch_paths", result.plan.items * QUANTUM << (2 * BLOCK_SHIFT)},
         {"effects", effect_names(scene.effects)},
         {"degenerate_triangles", scene.degenerate_triangles},
         {"notices", scene.notices},
-        {"dispatch_fill", result.dispatch_fill},
+        {"slots_busy", slots_busy(statistics)},
         {"scheduling_seconds", result.scheduling_seconds},
         {"dropped_samples", result.film.faults().count},
         {"sha256", layers},

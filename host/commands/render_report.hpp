@@ -46,6 +46,9 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
 void add_metadata(image::Picture& picture, const RenderCommand& command, const SceneData& scene,
                   const Backend& backend, const RenderResult& result);
 
+// Of the slots that steps were taken with, the share that had a live path.
+double slots_busy(const Statistics& statistics);
+
 // SHA-256 over everything of the scene that a device sees.
 std::string scene_hash(const SceneData& scene);
 

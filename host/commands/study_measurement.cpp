@@ -110,8 +110,8 @@ BackendTimes measure_rows(const std::string& name, const BackendOptions& options
         running[r].film =
             std::make_unique<Film>(study.side, study.side, Window{0, 0, study.side, study.side},
                                    batches_of(study.samples));
-        at_once = std::min(at_once,
-                           size_t(std::max(1, running[r].backend->plan(running[r].scene).items)));
+        at_once = std::min(
+            at_once, size_t(std::max(1, running[r].backend->plan(running[r].scene).most_items)));
     }
     const std::vector<Pixel> blocks = blocks_of(study.side, study.side);
     const auto items_from = [&](size_t first, int sample) {

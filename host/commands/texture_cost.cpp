@@ -57,7 +57,7 @@ struct StageTimes {
 StageTimes stage_times(Backend& backend, const SceneData& scene)
 {
     std::vector<WorkItem> items = items_of_picture();
-    items.resize(std::min(items.size(), size_t(std::max(1, backend.plan(scene).items))));
+    items.resize(std::min(items.size(), size_t(std::max(1, backend.plan(scene).most_items))));
     const Dispatch dispatch{items};
     Results results;
     const auto seconds = [&](const char* stage) {

@@ -66,6 +66,7 @@ Finished compile(const std::string& source, const std::string& out, unsigned eff
                                         "-S",
                                         "-DFAULT=FAULT_none",
                                         "-DGROUP_SIZE=64",
+                                        "-DPAGE_SHIFT=0",
                                         "-DEFFECTS=" + std::to_string(effects) + "u",
                                         "-Xclang",
                                         "-mlink-builtin-bitcode",

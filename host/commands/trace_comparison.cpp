@@ -32,6 +32,7 @@ RowUse use_of(PathRowName row)
     switch (row) {
     case row_pixel:
     case row_sample:
+    case row_entry:
     case row_depth:
     case row_radiance:
         return {STAGE_generate_paths, 0, Meaning::always};

@@ -67,6 +67,7 @@ void LiveRender::render_once()
     dispatched_ = asked_ = Clock::now();
     RenderOptions options;
     options.stop = &stop_;
+    options.stops_at_once = true;
     for (const bool is_preview : {true, false}) {
         if (stop_ || (is_preview && samples_ == 1)) continue;
         options.samples = is_preview ? 1 : samples_;

@@ -98,7 +98,7 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
     const unsigned seed = scene.settings[0].seed;
     scene.settings[0].seed = hash_uint(seed + 0x51ed270bu);
     backend.upload(scene);
-    const size_t most = size_t(std::max(1, result.plan.items));
+    const size_t most = size_t(std::max(1, result.plan.most_items));
 
     Audit audit;
     Tally all;

@@ -9,8 +9,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double first_level = 4;       // JND: where a render with only a time limit begins
-constexpr int small_picture = 500'000;  // pixels
+constexpr double first_level = 4;          // JND: where a render with only a time limit begins
+constexpr int small_picture = 500'000;     // pixels
+constexpr double longest_dispatch = 0.25;  // seconds, where a device can leave one for later
+constexpr size_t items_of_pixel = 64;      // quanta at once, likewise
 
 double seconds_since(Clock::time_point start)
 {
@@ -59,8 +61,6 @@ public:
         while (finish_round() && !is_complete) is_complete = !begin_round();
         RenderResult result{std::move(state_.film), std::move(state_.schedule), plan_,
                             backend_.statistics(), seconds_since(start_)};
-        const double room = double(dispatches_) * double(items_planned());
-        if (dispatches_ > 0) result.dispatch_fill = double(items_) / room;
         result.scheduling_seconds = scheduling_seconds_;
         result.blocks = int(grid_.corners.size());
         describe_ending(result, is_complete);
@@ -73,7 +73,7 @@ private:
     bool is_time_over() const
     {
         return options_.time_limit > 0 && has_picture_ &&
-               seconds_since(start_) >= options_.time_limit;
+               (is_time_used_up_ || seconds_since(start_) >= options_.time_limit);
     }
 
     void describe_ending(RenderResult& result, bool is_complete) const
@@ -106,11 +106,14 @@ private:
         return int(std::clamp(std::floor(jnd * error_unit), 1.0, 1e9));
     }
 
+    // Whether paths stay under way from one dispatch to the next.
+    bool is_streaming() const { return plan_.most_items > plan_.items; }
+
     // A plan's items are blocks of the largest size.
     size_t items_planned() const
     {
-        if (options_.pixel) return 1;
-        const size_t planned = size_t(std::max(1, plan_.items))
+        if (options_.pixel) return is_streaming() ? items_of_pixel : 1;
+        const size_t planned = size_t(std::max(1, plan_.most_items))
                                << (2 * BLOCK_SHIFT - grid_.pixel_shift());
         return options_.most_items > 0 ? std::min(planned, size_t(options_.most_items)) : planned;
     }
@@ -119,7 +122,7 @@ private:
     size_t items_at_once(int samples) const
     {
         const size_t planned = items_planned();
-        if (options_.time_limit <= 0 || seconds_per_sample_ <= 0) return planned;
+        if (options_.time_limit <= 0 || seconds_per_sample_ <= 0 || is_streaming()) return planned;
         const double left =
             std::max(options_.time_limit - seconds_since(start_), 0.05 * options_.time_limit);
         const double items = left / (seconds_per_sample_ * samples);
@@ -171,39 +174,73 @@ private:
         const bool is_first = !has_picture_ || !is_adaptive(options_);
         const std::vector<Work> work = is_first ? work_by_pass(state_.schedule)
                                                 : work_by_block(state_.schedule, quanta_, errors_);
+        items_under_way_ = 0;
         for (size_t first = 0; first < work.size();) {
-            if (is_interrupted() || is_time_over()) return false;
+            if (is_interrupted() && (items_under_way_ == 0 || options_.stops_at_once)) return false;
+            if (is_time_over() && items_under_way_ == 0) return false;
             const int samples = quanta_[size_t(work[first].quantum)].samples;
-            const size_t count = dispatch_length(work, first, items_at_once(samples), quanta_);
-            run_dispatch({work.data() + first, count});
-            first += count;
+            const size_t most = std::max(items_at_once(samples), items_under_way_);
+            const size_t count = dispatch_length(work, first, most, quanta_);
+            const size_t all = dispatch_length(work, first, work.size(), quanta_);
+            first += run_dispatch({work.data() + first, count}, all - count);
         }
         if (!work.empty()) has_picture_ = true;
         return true;
     }
 
-    void run_dispatch(std::span<const Work> work)
+    // The time that what is under way still takes is left to it.
+    bool is_time_for_the_rest(int samples) const
+    {
+        return options_.time_limit > 0 && has_picture_ &&
+               seconds_since(start_) + first_done_ * samples >= options_.time_limit;
+    }
+
+    // How long the first items to be done took, a sample of theirs.
+    void measure_pace(double seconds, int items, int samples)
+    {
+        seconds_under_way_ += seconds;
+        if (items == 0) return;
+        const double now = seconds_under_way_ / samples;
+        first_done_ = first_done_ > 0 ? std::min(first_done_, now) : now;
+        seconds_per_sample_ = seconds / (double(items) * samples);
+    }
+
+    // How many of the list are done: all, or where the device has left it, the first of them.
+    size_t run_dispatch(std::span<const Work> work, size_t following)
     {
         const Clock::time_point start = Clock::now();
+        const int samples = quanta_[size_t(work[0].quantum)].samples;
+        Wish wish = Wish::go_on;
+        const auto ask = [&] {
+            if (wish == Wish::finish) return wish;
+            const bool is_dropped = is_interrupted() && options_.stops_at_once;
+            if (is_dropped || seconds_since(start) > longest_dispatch) wish = Wish::leave;
+            if (!is_dropped && (is_interrupted() || is_time_for_the_rest(samples)))
+                wish = Wish::finish;
+            return wish;
+        };
         work_items_.clear();
         for (const Work& part : work) {
             const Pixel& corner = grid_.corners[size_t(part.block)];
             work_items_.push_back(
                 {corner.x, corner.y, quanta_[size_t(part.quantum)].first_sample, 0});
         }
-        const Quantum& last = quanta_[size_t(work.back().quantum)];
-        const Dispatch dispatch{work_items_, last.samples, grid_.pixel_shift()};
-        backend_.render(dispatch, results_);
+        if (items_under_way_ == 0) seconds_under_way_ = 0;
+        Dispatch dispatch{work_items_, samples, grid_.pixel_shift()};
+        const size_t done = size_t(backend_.advance(dispatch, {following, ask}, results_));
         const Clock::time_point merge = Clock::now();
+        items_under_way_ = wish == Wish::finish ? 0 : work.size() - done;
+        is_time_used_up_ = is_time_used_up_ || (wish == Wish::finish && !is_interrupted());
+        dispatch.items = dispatch.items.first(done);
         state_.film.add(dispatch, results_);
-        for (const Work& part : work)
+        for (const Work& part : work.first(done))
             state_.schedule.blocks[size_t(part.block)].quanta = part.quantum + 1;
         scheduling_seconds_ += seconds_since(merge);
-        seconds_per_sample_ = seconds_since(start) / (double(work.size()) * last.samples);
-        done_ += int(work.size());
-        items_ += work.size();
-        ++dispatches_;
+        measure_pace(seconds_since(start), int(done), samples);
+        done_ += int(done);
+        const Quantum& last = quanta_[size_t(work[done > 0 ? done - 1 : 0].quantum)];
         report(last.first_sample + last.samples);
+        return done;
     }
 
     void report(int samples)
@@ -260,10 +297,12 @@ private:
     Results results_;
     bool has_picture_ = true;        // every block has a quantum
     double seconds_per_sample_ = 0;  // of a block, in the last dispatch
+    double seconds_under_way_ = 0;   // since nothing was
+    double first_done_ = 0;
     double scheduling_seconds_ = 0;
-    long long done_ = 0;  // quanta of blocks, also before a resumption
-    size_t items_ = 0;
-    size_t dispatches_ = 0;
+    long long done_ = 0;            // quanta of blocks, also before a resumption
+    size_t items_under_way_ = 0;    // at most, where the last dispatch has been left
+    bool is_time_used_up_ = false;  // what is left of it is too short
 };
 
 }  // namespace

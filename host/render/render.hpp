@@ -44,7 +44,8 @@ struct RenderOptions {
     std::function<void(const Progress&)> progress;
     std::function<void(const RenderState&)> observe;  // after every dispatch, on this thread
     int most_items = 0;                               // in a dispatch; 0: what the backend plans
-    const std::atomic<bool>* stop = nullptr;          // looked at between dispatches
+    const std::atomic<bool>* stop = nullptr;          // looked at between dispatches, or more often
+    bool stops_at_once = false;  // does not wait for paths under way; they are lost
 };
 
 struct RenderResult {
@@ -53,8 +54,7 @@ struct RenderResult {
     Plan plan;
     Statistics statistics;
     double seconds = 0;
-    double dispatch_fill = 1;  // work items in all dispatches, of those there was room for
-    bool is_complete = true;   // false: interrupted
+    bool is_complete = true;  // false: interrupted
     Ending ending = Ending::SamplesDone;
     double target = 0;          // JND that all blocks were to reach when it ended; 0: uniform
     int unfinished_blocks = 0;  // above the target

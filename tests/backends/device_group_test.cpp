@@ -27,7 +27,7 @@ public:
     Plan plan(const SceneData& scene) const override
     {
         Plan plan = cpu_->plan(scene);
-        plan.items = std::min(plan.items, 3);
+        plan.items = plan.most_items = std::min(plan.items, 3);
         return plan;
     }
     void upload(SceneData& scene) override { cpu_->upload(scene); }

@@ -3,6 +3,7 @@
 #include "tests/backends/opencl_fixture.hpp"
 
 #include "backends/opencl_backend.hpp"
+#include "host/scene/scene_builder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -99,6 +100,103 @@ TEST_F(OpenclBackendTest, DoesNotDependOnTheLengthOfLaunches)
         on_each_device(hurried, [&](Backend& other) {
             EXPECT_TRUE(is_same(one, render(other, scene, blocks(scene), QUANTUM)));
         });
+    });
+}
+
+// A scene whose picture is full blocks, and so many quanta of it.
+SceneData full_blocks()
+{
+    SceneData scene = lamp_scene();
+    scene.settings[0].width = 48;
+    scene.settings[0].height = 32;
+    return scene;
+}
+
+std::vector<WorkItem> blocks_of_quanta(const SceneData& scene, int quanta)
+{
+    std::vector<WorkItem> items;
+    for (int q = 0; q < quanta; ++q)
+        for (const WorkItem& item : blocks(scene, q * QUANTUM)) items.push_back(item);
+    return items;
+}
+
+// In 4096 slots, which work on 24 pixels each.
+BackendOptions few_slots()
+{
+    BackendOptions options;
+    options.memory_bytes = 3u << 20;
+    return options;
+}
+
+TEST_F(OpenclBackendTest, GoesOnWhereItLeftADispatch)
+{
+    SceneData scene = full_blocks();
+    const std::vector<WorkItem> items = blocks_of_quanta(scene, 6);
+    on_each_device(few_slots(), [&](Backend& backend) {
+        ASSERT_EQ(backend.plan(scene).items, 1);
+        const Results all = render(backend, scene, items, QUANTUM);
+        std::vector<float> red;
+        size_t calls = 0;
+        for (size_t first = 0; first < items.size(); ++calls) {
+            const std::span<const WorkItem> rest = std::span(items).subspan(first);
+            const Dispatch dispatch{rest.first(std::min<size_t>(rest.size(), 20))};
+            Results part;
+            const Pace pace{rest.size() - dispatch.items.size(), [] { return Wish::leave; }};
+            const size_t done = size_t(backend.advance(dispatch, pace, part));
+            ASSERT_EQ(part.fault.size(), done << (2 * BLOCK_SHIFT));
+            red.insert(red.end(), part.sum_radiance.begin(),
+                       part.sum_radiance.begin() + std::ptrdiff_t(part.fault.size()));
+            first += done;
+            ASSERT_LT(calls, 10'000u);
+        }
+        EXPECT_GT(calls, 30u);
+        EXPECT_EQ(backend.statistics().paths, 2 * items.size() * 256 * QUANTUM);
+        for (size_t r = 0; r < red.size(); ++r) ASSERT_EQ(red[r], all.sum_radiance[r]) << r;
+    });
+}
+
+// Asked for another list, what was under way is forgotten; asked to finish, nothing more begins.
+TEST_F(OpenclBackendTest, ForgetsWhatItLeftOrFinishesIt)
+{
+    SceneData scene = full_blocks();
+    const std::vector<WorkItem> items = blocks_of_quanta(scene, 6);
+    const std::span<const WorkItem> others = std::span(items).subspan(6, 6);
+    on_each_device(few_slots(), [&](Backend& backend) {
+        const Results all = render(backend, scene, items, QUANTUM);
+        Results part;
+        int turns = 0;
+        backend.advance({items}, {0, [&] { return Wish::leave; }}, part);
+        backend.render({others}, part);
+        for (size_t r = 0; r < part.fault.size(); ++r)
+            ASSERT_EQ(part.sum_radiance[r], all.sum_radiance[r + 6 * 256]);
+        const Pace soon{6, [&] { return ++turns < 30 ? Wish::go_on : Wish::finish; }};
+        const size_t done = size_t(backend.advance({items}, soon, part));
+        EXPECT_GE(done, 16u);  // as many as there are slots
+        EXPECT_LT(done, items.size());
+        for (size_t r = 0; r < part.fault.size(); ++r)
+            ASSERT_EQ(part.sum_radiance[r], all.sum_radiance[r]);
+    });
+}
+
+TEST_F(OpenclBackendTest, KeepsItsSlotsBusy)
+{
+    SceneData scene = full_blocks();
+    on_each_device(few_slots(), [&](Backend& backend) {
+        backend.upload(scene);
+        const std::vector<WorkItem> items = blocks_of_quanta(scene, 112);
+        const size_t most = size_t(backend.plan(scene).most_items);
+        Results part;
+        for (size_t first = 0; first < items.size();) {
+            const std::span<const WorkItem> rest = std::span(items).subspan(first);
+            const size_t count = std::min(rest.size(), most);
+            first += size_t(backend.advance({rest.first(count)}, {rest.size() - count, {}}, part));
+        }
+        const Statistics statistics = backend.statistics();
+        EXPECT_EQ(statistics.paths, items.size() * 256 * QUANTUM);
+        const double busy = double(statistics.busy_steps) / double(statistics.slot_steps);
+        RecordProperty("busy", std::to_string(busy));
+        EXPECT_GT(busy, 0.95);
+        EXPECT_LE(busy, 1.0);
     });
 }
 
@@ -208,6 +306,26 @@ TEST_F(OpenclBackendTest, PlansWithinTheMemoryWhateverThePicture)
     });
 }
 
+TEST_F(OpenclBackendTest, AllocatesAsMuchFor1MegapixelAsFor64)
+{
+    SceneData scene = lamp_scene();
+    on_each_device({}, [&](Backend& backend) {
+        const auto allocated = [&](int side) {
+            scene.settings[0].width = scene.settings[0].height = side;
+            const WorkItem corners[] = {{0, 0, 0, 0}, {side - 16, side - 16, 0, 0}};
+            const Results results = render(backend, scene, {corners[0], corners[1]}, 1);
+            EXPECT_EQ(results.sum_alpha.size(), 512u);
+            const Plan plan = backend.plan(scene);
+            const size_t planned = plan.scene_bytes + plan.structure_bytes + plan.path_bytes;
+            const size_t bytes = backend.statistics().allocated_bytes;
+            EXPECT_LE(bytes, planned + 1024);  // an element where the scene has none
+            EXPECT_GT(double(bytes), 0.95 * double(planned));
+            return double(bytes);
+        };
+        EXPECT_NEAR(allocated(8192) / allocated(1024), 1, 0.01);
+    });
+}
+
 // As on a device with narrow limits.
 class NarrowDevice {
 public:
@@ -237,17 +355,70 @@ TEST_F(OpenclBackendTest, RendersTheSameInSmallAllocations)
     });
 }
 
-TEST_F(OpenclBackendTest, RefusesByNumbersWhatIsTooLargeForOneAllocation)
+// A ball of many triangles with a picture on it, whose texels begin after `before` others.
+SceneData painted_ball(size_t before)
 {
+    Picture picture{160, 160, {}, {}, true, 0};
+    for (unsigned k = 0; k < 4 * 160 * 160; ++k) picture.bytes.push_back(uint8_t(k * k >> 9));
+    SceneBuilder builder;
+    const int image = builder.add_image(picture);
+    const int paint = builder.add_material({.base_texture = {.image = image}});
+    const int lamp = builder.add_material({.emission = {5, 5, 5}});
+    builder.place(builder.add_mesh(sphere_mesh({0, 0, 0}, 1, 72, paint)));
+    builder.place(builder.add_mesh(quad_mesh({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, lamp)));
+    builder.set_camera({.eye = {0, 1, 3}, .target = {0, 0, 0}});
+    builder.set_picture_size(32, 32);
+    SceneData scene = builder.finish();
+    scene.texels_8.insert(scene.texels_8.begin(), before, 0u);
+    for (Image& i : scene.images) i.first_texel += int(before);
+    return scene;
+}
+
+// Geometry, tree and texels in pages of 64 KiB.
+TEST_F(OpenclBackendTest, RendersTheSameFromPages)
+{
+    SceneData scene = painted_ball(0);
+    on_each_device({}, [&](Backend& wide) {
+        const Results expected = render(wide, scene, blocks(scene), QUANTUM);
+        EXPECT_GT(scene.triangles.size() * sizeof(Triangle), 1u << 16);
+        EXPECT_GT(scene.bvh_nodes.size() * sizeof(BvhNode), 2u << 16);
+        EXPECT_GT(scene.texels_8.size() * sizeof(uint), 1u << 16);
+        const NarrowDevice limit(100'000);
+        on_each_device({}, [&](Backend& narrow) {
+            EXPECT_TRUE(is_same(expected, render(narrow, scene, blocks(scene), QUANTUM)));
+        });
+    });
+}
+
+// A device with 256 MiB at once, texels of 300.
+TEST_F(OpenclBackendTest, RendersTexelsBeyondOneAllocationOf256MiB)
+{
+    SceneData near = painted_ball(0);
+    SceneData far = painted_ball((300u << 20) / sizeof(uint));
     const NarrowDevice limit(256u << 20);
+    BackendOptions options;
+    options.memory_bytes = 1u << 30;
+    on_each_device(options, [&](Backend& backend) {
+        const Results expected = render(backend, near, blocks(near), 2);
+        EXPECT_TRUE(is_same(expected, render(backend, far, blocks(far), 2)));
+    });
+}
+
+TEST_F(OpenclBackendTest, RefusesByNumbersWhatIsTooLargeForItsAllocations)
+{
+    const NarrowDevice limit(1u << 20);
     SceneData scene = lamp_scene();
-    scene.texels_8.resize((300u << 20) / sizeof(uint));
+    scene.texels_8.resize((5u << 20) / sizeof(uint));
     on_each_device({}, [&](Backend& backend) {
         const std::string message = message_of([&] { backend.plan(scene); });
-        EXPECT_NE(message.find("texels_8 need 301 MB"), std::string::npos) << message;
-        EXPECT_NE(message.find("at most 257 MB"), std::string::npos) << message;
-        scene.texels_8.resize((200u << 20) / sizeof(uint));
+        EXPECT_NE(message.find("texels_8 need 6 MB"), std::string::npos) << message;
+        EXPECT_NE(message.find("at most 2 MB at once, of which 4"), std::string::npos) << message;
+        scene.texels_8.resize((4u << 20) / sizeof(uint));
         EXPECT_EQ(message_of([&] { backend.plan(scene); }), "");
+        scene.lights.resize((2u << 20) / sizeof(Light));
+        const std::string lights = message_of([&] { backend.plan(scene); });
+        EXPECT_NE(lights.find("lights need 3 MB"), std::string::npos) << lights;
+        scene.lights.resize(1);
     });
 }
 

@@ -94,9 +94,9 @@ protected:
             clang_ + " -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -O1 -Wall -Werror" +
             " -Wno-unused-function -Wno-unknown-warning-option " + GetParam().flags +
             (links ? " -Xclang -mlink-builtin-bitcode -Xclang " + library : "") +
-            " -D FAULT=FAULT_none -D GROUP_SIZE=64 -D EFFECTS=" + std::to_string(effects) + " " +
-            source.string() + " -o " + (folder_ / "out").string() + " 2> " +
-            (folder_ / "log").string();
+            " -D FAULT=FAULT_none -D GROUP_SIZE=64 -D PAGE_SHIFT=0 -D EFFECTS=" +
+            std::to_string(effects) + " " + source.string() + " -o " + (folder_ / "out").string() +
+            " 2> " + (folder_ / "log").string();
         EXPECT_EQ(run(command), 0) << command << "\n" << text_of(folder_ / "log");
     }
 

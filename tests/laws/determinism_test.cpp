@@ -51,6 +51,36 @@ TEST_P(Determinism, ThreadsAndMemoryChangeNoBit)
     BackendOptions little;
     little.memory_bytes = 3u << 20;
     EXPECT_TRUE(is_same(one, picture_of(GetParam(), little, scene, samples)));
+    RenderOptions short_dispatches = samples;
+    short_dispatches.most_items = 3;
+    EXPECT_TRUE(is_same(one, picture_of(GetParam(), {}, scene, short_dispatches)));
+}
+
+// Paths may be under way when it is stopped: what they have found so far is not lost.
+TEST_P(Determinism, StoppedAndResumedARenderHasTheSameBits)
+{
+    SceneData scene = busy_scene(40, 24);
+    backend_->upload(scene);
+    RenderOptions options = with_samples(80);
+    const std::vector<float> whole =
+        image::beauty_of(render(*backend_, scene, options).film.picture()).pixels;
+    std::atomic<bool> stop{false};
+    int dispatches = 0;
+    options.most_items = 5;
+    options.stop = &stop;
+    options.observe = [&](const RenderState&) {
+        if (++dispatches % 2 == 0) stop = true;
+    };
+    std::optional<RenderState> state;
+    int renders = 0;
+    for (bool is_complete = false; !is_complete && renders < 100; ++renders) {
+        stop = false;
+        RenderResult part = render(*backend_, scene, options, std::move(state));
+        is_complete = part.is_complete;
+        state = RenderState{std::move(part.film), std::move(part.schedule)};
+    }
+    EXPECT_GT(renders, 2);
+    EXPECT_TRUE(is_same(whole, image::beauty_of(state->film.picture()).pixels));
 }
 
 TEST_P(Determinism, OnePixelAloneHasItsValueInThePicture)

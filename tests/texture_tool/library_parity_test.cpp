@@ -210,7 +210,8 @@ public:
         const std::string source = text_of(LIBRARY_KERNELS);
         const char* text = source.c_str();
         program_.reset(clCreateProgramWithSource(context_.get(), 1, &text, nullptr, nullptr));
-        const char* options = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -D EFFECTS=0";
+        const char* options = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -D EFFECTS=0 "
+                              "-D PAGE_SHIFT=0";
         if (clBuildProgram(program_.get(), 1, &device, options, nullptr, nullptr) != CL_SUCCESS) {
             std::vector<char> log(1 << 16);
             clGetProgramBuildInfo(program_.get(), device, CL_PROGRAM_BUILD_LOG, log.size() - 1,

@@ -43,7 +43,7 @@ public:
     Plan plan(const SceneData&) const override
     {
         Plan plan;
-        plan.items = 64;
+        plan.items = plan.most_items = 64;
         return plan;
     }
     void upload(SceneData&) override {}
