@@ -17,14 +17,6 @@ std::string address_of(const std::string& text)
 
 }  // namespace
 
-image::Picture picture_of(const Film& film, const Viewer& viewer)
-{
-    image::Picture picture = film.picture();
-    if (film.has_standard_error() && film.data().window.pixels() > 1)
-        picture.layers.push_back(image::predicted_error_layer(predicted_error(film, viewer)));
-    return picture;
-}
-
 ProgressPictures::ProgressPictures(const RenderCommand& command, const RenderOptions& options,
                                    const image::WriteOptions& write)
     : command_(command), options_(options), write_(write)

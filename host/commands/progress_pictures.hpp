@@ -9,9 +9,6 @@
 
 namespace diptych {
 
-// What is written: the film's layers, and where its error is known, how visible it is.
-image::Picture picture_of(const Film& film, const Viewer& viewer);
-
 class ProgressPictures {
 public:
     // Throws std::runtime_error for flags of no sense.

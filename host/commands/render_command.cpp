@@ -33,14 +33,6 @@ void print_pixel(const Film& film, const Pixel& pixel)
                value[2]);
 }
 
-// Blocks by which the error is summed up, the same for uniform and adaptive renders.
-BlockGrid error_grid(const Settings& settings)
-{
-    RenderOptions adaptive;
-    adaptive.error = 1;
-    return grid_of(settings, adaptive);
-}
-
 // Before anything is allocated.
 void check_film_fits(const Settings& settings, const RenderOptions& options)
 {

@@ -18,8 +18,9 @@ namespace {
 // Between the terminal, the files and the render.
 class WatchSession {
 public:
-    WatchSession(const RenderCommand& command, const image::WriteOptions& write)
-        : command_(command), write_(write), interrupted_(watch_for_interrupts())
+    WatchSession(const RenderCommand& command, const RenderOptions& aims,
+                 const image::WriteOptions& write)
+        : command_(command), aims_(aims), write_(write), interrupted_(watch_for_interrupts())
     {
     }
 
@@ -28,8 +29,10 @@ public:
         return {.requests = [this](double seconds) { return requests(seconds); },
                 .watch_files = [this](const auto& files,
                                       auto read_at) { watcher_.watch(files, read_at); },
-                .show = [this](const image::Picture& picture, const LiveScene&, const Backend&,
-                               bool is_complete) { show(picture, is_complete); },
+                .show = [this](const image::Picture& picture, const LiveScene& scene,
+                               const Backend&, const RenderResult* end) {
+                    if (show(picture) && end) tell_end(*end, scene);
+                },
                 .tell = [this](const std::string& line) { tell(line); },
                 .warn =
                     [](const std::string& message) {
@@ -63,7 +66,7 @@ private:
     }
 
     // A disk that is full now may not be in a minute.
-    void show(image::Picture picture, bool is_complete) const
+    bool show(image::Picture picture) const
     {
         picture.metadata["program"] = "diptych " DIPTYCH_VERSION;
         picture.metadata["backend"] = command_.device.backend;
@@ -73,14 +76,27 @@ private:
                 image::write_picture(path, picture, write_);
         } catch (const std::runtime_error& error) {
             fmt::print(stderr, "{}\n", error.what());
-            return;
+            return false;
         }
-        if (is_complete)
+        return true;
+    }
+
+    void tell_end(const RenderResult& end, const LiveScene& scene) const
+    {
+        if (is_adaptive(aims_)) {
+            const ErrorSummary error =
+                summarise_error(end.film, error_grid(scene.data().settings[0]), aims_.viewer,
+                                aims_.error > 0 ? aims_.error : 1);
+            tell(ending_text(end, aims_, error));
+            tell("complete, written; waiting for edits");
+        } else {
             tell(fmt::format("complete with {} samples a pixel, written; waiting for edits",
-                             command_.scene.samples));
+                             aims_.samples));
+        }
     }
 
     const RenderCommand& command_;
+    const RenderOptions& aims_;
     const image::WriteOptions& write_;
     const std::atomic<bool>& interrupted_;
     FileWatcher watcher_;
@@ -104,9 +120,10 @@ CLI::App* add_watch_command(CLI::App& app, WatchCommand& command)
     watch->get_option("SCENE")->required();
     add_output_flags(*watch, command.render);
     add_device_flags(*watch, command.render.device);
+    add_error_flags(*watch, command.render.error);
     watch->footer(
-        "The pictures are written anew as samples come, and hold --samples in the end. Saving a "
-        "texture's file\nmakes its stage anew; changing arguments in the scene's file, or typing "
+        "The pictures are written anew as samples come, and hold --samples in the end, or what --error "
+        "and --time ask\nfor; an edit begins the time again. Saving a texture's file makes its stage anew; changing arguments in the scene's file, or typing "
         "NODE.ARGUMENT=JSON, compiles\nnothing; any other change loads the scene again. An edit "
         "that fails is told and not taken.\n"
         "`quit` or SIGINT end it with the picture as it is.\n"
@@ -123,7 +140,11 @@ int run_watch_command(const WatchCommand& command)
     if (run.outputs.empty()) run.outputs.push_back("diptych.png");
     for (const std::string& path : run.outputs) image::check_writable(path);
 
-    WatchSession session(run, write);
+    RenderOptions aims;
+    aims.viewer = {write.exposure, write.view};
+    set_targets(run.error, run.scene.samples, aims);
+
+    WatchSession session(run, aims, write);
     const auto load = [&](const std::vector<std::string>& values) {
         SceneFlags flags = run.scene;
         flags.load.texture_values = values;
@@ -133,12 +154,9 @@ int run_watch_command(const WatchCommand& command)
     const auto make = [&] {
         return make_backend(run.device.backend, options_from_flags(run.device));
     };
-    LiveRender live(scene, make, session.hooks(), run.scene.samples);
-    if (!run.is_quiet) {
-        RenderOptions options;
-        options.samples = run.scene.samples;
-        print_plan(scene.data(), live.backend(), live.backend().plan(scene.data()), options);
-    }
+    LiveRender live(scene, make, session.hooks(), aims);
+    if (!run.is_quiet)
+        print_plan(scene.data(), live.backend(), live.backend().plan(scene.data()), aims);
     session.tell(
         fmt::format("{} files; NODE.ARGUMENT=JSON sets a value, quit ends", scene.files().size()));
     live.run();

@@ -41,9 +41,10 @@ void fill_gaps(image::Picture& picture, const image::Picture& preview)
 
 }  // namespace
 
-LiveRender::LiveRender(LiveScene& scene, MakeBackend make_backend, LiveHooks hooks, int samples)
+LiveRender::LiveRender(LiveScene& scene, MakeBackend make_backend, LiveHooks hooks,
+                       RenderOptions aims)
     : scene_(scene), make_backend_(std::move(make_backend)), hooks_(std::move(hooks)),
-      samples_(samples), backend_(make_backend_())
+      aims_(std::move(aims)), backend_(make_backend_())
 {
     backend_->upload(scene_.data());
     hooks_.watch_files(scene_.files(), scene_.read_at());
@@ -65,12 +66,15 @@ void LiveRender::render_once()
     old_backends_.clear();
     old_scenes_.clear();
     dispatched_ = asked_ = Clock::now();
-    RenderOptions options;
-    options.stop = &stop_;
-    options.stops_at_once = true;
     for (const bool is_preview : {true, false}) {
-        if (stop_ || (is_preview && samples_ == 1)) continue;
-        options.samples = is_preview ? 1 : samples_;
+        if (stop_ || (is_preview && aims_.samples == 1)) continue;
+        RenderOptions options;
+        if (!is_preview)
+            options = aims_;
+        else
+            options.samples = 1;
+        options.stop = &stop_;
+        options.stops_at_once = true;
         options.most_items = most_items_;
         options.observe = [&](const RenderState& state) {
             after_dispatch(state.film, is_preview);
@@ -79,7 +83,7 @@ void LiveRender::render_once()
         const RenderResult result = render(*backend_, scene_.data(), options);
         if (is_preview) preview_ = result.film.picture();
         const bool is_complete = result.is_complete && !is_preview;
-        if (!stop_ || is_over_ || is_complete) show(result.film, is_complete);
+        if (!stop_ || is_over_ || is_complete) show(result.film, is_complete ? &result : nullptr);
     }
 }
 
@@ -96,17 +100,17 @@ void LiveRender::after_dispatch(const Film& film, bool is_preview)
         most_items_ = std::clamp(int(most_items_ * dispatch_seconds / std::max(seconds, 1e-4)),
                                  std::max(1, most_items_ / 2), std::min(2 * most_items_, 1024));
     if (!is_preview && seconds_since(shown_) > std::max(show_every, show_seconds_ / show_share))
-        show(film, false);
+        show(film, nullptr);
     serve(0);
     dispatched_ = Clock::now();
 }
 
-void LiveRender::show(const Film& film, bool is_complete)
+void LiveRender::show(const Film& film, const RenderResult* end)
 {
     const auto start = Clock::now();
-    image::Picture picture = film.picture();
+    image::Picture picture = picture_of(film, aims_.viewer);
     fill_gaps(picture, preview_);
-    hooks_.show(picture, scene_, *backend_, is_complete);
+    hooks_.show(picture, scene_, *backend_, end);
     shown_ = Clock::now();
     show_seconds_ = seconds_since(start);
 }

@@ -28,8 +28,9 @@ struct LiveHooks {
     // The files to watch are others now; the scene was read at that time.
     std::function<void(const std::vector<std::filesystem::path>&, std::filesystem::file_time_type)>
         watch_files;
-    // A picture worth showing; the last one of an edit is complete.
-    std::function<void(const image::Picture&, const LiveScene&, const Backend&, bool is_complete)>
+    // A picture worth showing; `end`: how its render ended, nullptr while it goes on.
+    std::function<void(const image::Picture&, const LiveScene&, const Backend&,
+                       const RenderResult* end)>
         show;
     std::function<void(const std::string&)> tell;  // a line: what an edit did, how long it took
     std::function<void(const std::string&)> warn;  // the message of an edit that failed
@@ -39,8 +40,9 @@ class LiveRender {
 public:
     using MakeBackend = std::function<std::unique_ptr<Backend>()>;
 
-    // Uploads the scene. Throws what the backend does.
-    LiveRender(LiveScene& scene, MakeBackend make_backend, LiveHooks hooks, int samples);
+    // aims: samples, error, time and viewer of each picture. Uploads the scene. Throws what the
+    // backend does.
+    LiveRender(LiveScene& scene, MakeBackend make_backend, LiveHooks hooks, RenderOptions aims);
 
     // Until a request is_over; the last picture has been shown then.
     void run();
@@ -58,13 +60,13 @@ private:
     void follow(const Edit& edit);
     void hold(const std::string& message);
     void tell_held_message();
-    void show(const Film& film, bool is_complete);
+    void show(const Film& film, const RenderResult* end);
     void begin_again(const Edit& edit, Clock::time_point since);
 
     LiveScene& scene_;
     MakeBackend make_backend_;
     LiveHooks hooks_;
-    int samples_;
+    RenderOptions aims_;
     std::unique_ptr<Backend> backend_;
     // What the render under way still uses, after all of its scene was loaded anew.
     std::vector<std::unique_ptr<SceneData>> old_scenes_;

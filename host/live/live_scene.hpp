@@ -39,6 +39,7 @@ public:
               std::vector<std::string> values, Loader load);
 
     SceneData& data() { return *data_; }
+    const SceneData& data() const { return *data_; }
     // All that the scene was read from, and what it named when it last could not be read.
     std::vector<std::filesystem::path> files() const;
     // Before they were last read: what was saved since may not be in data().

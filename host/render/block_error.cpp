@@ -193,4 +193,12 @@ std::vector<float> predicted_error(const Film& film, const Viewer& viewer)
     return out;
 }
 
+image::Picture picture_of(const Film& film, const Viewer& viewer)
+{
+    image::Picture picture = film.picture();
+    if (film.has_standard_error() && film.data().window.pixels() > 1)
+        picture.layers.push_back(image::predicted_error_layer(predicted_error(film, viewer)));
+    return picture;
+}
+
 }  // namespace diptych

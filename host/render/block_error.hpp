@@ -37,4 +37,7 @@ ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const View
 // with 95 % probability. Its own batches and those of its neighbours tell, 3 x 3 pixels.
 std::vector<float> predicted_error(const Film& film, const Viewer& viewer);
 
+// The film's layers, predicted_error among them where it is known.
+image::Picture picture_of(const Film& film, const Viewer& viewer);
+
 }  // namespace diptych

@@ -330,6 +330,13 @@ BlockGrid grid_of(const Settings& settings, const RenderOptions& options)
                           is_adaptive(options) && is_small ? BLOCK_SHIFT - 1 : BLOCK_SHIFT);
 }
 
+BlockGrid error_grid(const Settings& settings)
+{
+    RenderOptions adaptive;
+    adaptive.error = 1;
+    return grid_of(settings, adaptive);
+}
+
 size_t film_bytes(const Settings& settings, const RenderOptions& options)
 {
     return Film::bytes(window_of(settings, options), film_batches(options));

@@ -70,6 +70,9 @@ std::vector<Quantum> plan_of(const RenderOptions& options);
 // How the film is divided: small pictures of an adaptive render into blocks of half the side.
 BlockGrid grid_of(const Settings& settings, const RenderOptions& options);
 
+// The blocks by which the error of a whole picture is summed up, uniform or adaptive.
+BlockGrid error_grid(const Settings& settings);
+
 // What the film will take on the host.
 size_t film_bytes(const Settings& settings, const RenderOptions& options);
 

@@ -107,9 +107,10 @@ protected:
     {
         return image::beauty_of(image::read_picture(folder_ / picture)).pixels;
     }
-    std::vector<float> rendered(std::vector<std::string> more) const
+    std::vector<float> rendered(const std::vector<std::string>& more,
+                                const std::string& samples = "4") const
     {
-        std::vector<std::string> all = words("fresh.exr", "4");
+        std::vector<std::string> all = words("fresh.exr", samples);
         all.insert(all.begin(), "render");
         all.insert(all.end(), more.begin(), more.end());
         const Outcome outcome = run_diptych(all, {.seconds = 200});
@@ -152,6 +153,36 @@ TEST_F(WatchCommandLine, TheEndOfTheInputEndsNothingAndInterruptsWriteThePicture
     watch.send(SIGINT);
     EXPECT_EQ(watch.exit_code(), 130) << watch.log();
     EXPECT_EQ(image::read_picture(folder_ / "out.png").width, 40);
+}
+
+// The picture is that of a render with the same target, before and after an edit.
+TEST_F(WatchCommandLine, RendersUntilTheErrorIsSmallEnough)
+{
+    std::vector<std::string> flags = words("out.exr", "512");
+    flags.insert(flags.end(), {"--error", "2"});
+    Watch watch(folder_, flags);
+    ASSERT_TRUE(watch.says("asked for 2 JND, predicted"));
+    ASSERT_TRUE(watch.says("complete, written"));
+    watch.type("paint.scale=3\n");
+    ASSERT_TRUE(watch.says("nothing to compile"));
+    ASSERT_TRUE(watch.says("complete, written"));
+    watch.type("quit\n");
+    EXPECT_EQ(watch.exit_code(), 0);
+    EXPECT_EQ(pixels("out.exr"),
+              rendered({"--set", "paint.scale=3", "--error", "2"}, "512"));
+}
+
+TEST_F(WatchCommandLine, EndsItsPicturesWhenTheTimeIsOver)
+{
+    std::vector<std::string> flags = words("out.exr", "1000000");
+    flags.insert(flags.end(), {"--time", "0.2s"});
+    Watch watch(folder_, flags);
+    ASSERT_TRUE(watch.says("the time is over"));
+    ASSERT_TRUE(watch.says("complete, written"));
+    watch.type("paint.scale=3\n");
+    ASSERT_TRUE(watch.says("the time is over"));
+    watch.type("quit\n");
+    EXPECT_EQ(watch.exit_code(), 0);
 }
 
 TEST_F(WatchCommandLine, WrongWordsAreRefused)

@@ -73,8 +73,8 @@ protected:
         LiveHooks hooks;
         hooks.watch_files = [&](const auto& files, auto) { watched_ = files; };
         hooks.show = [&](const image::Picture& picture, const LiveScene&, const Backend&,
-                         bool is_complete) {
-            if (!is_complete) return;
+                         const RenderResult* end) {
+            if (!end) return;
             pictures_.push_back(image::beauty_of(picture).pixels);
             compilations_.push_back(texture_compilations());
             due();
@@ -102,8 +102,10 @@ protected:
         };
         LiveScene scene(folder_ / "scene.gltf", {}, {},
                         [&](const std::vector<std::string>& values) { return load(values); });
+        RenderOptions aims;
+        aims.samples = samples;
         LiveRender live(
-            scene, [] { return make_backend(GetParam(), {}); }, hooks, samples);
+            scene, [] { return make_backend(GetParam(), {}); }, hooks, aims);
         live.run();
     }
 
