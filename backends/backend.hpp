@@ -82,6 +82,7 @@ struct Pace {
 struct Statistics {
     std::map<std::string, double> stage_seconds;  // summed over threads
     double setup_seconds = 0;                     // structures, programs
+    // OpenCL's count every path that was launched, whether it still had a ray to trace or not.
     unsigned long long rays = 0;
     unsigned long long shadow_rays = 0;
     unsigned long long undecided_rays = 0;  // see most_alpha_layers

@@ -264,3 +264,17 @@ SHARED float3 normal_facing(float3 n, float3 view)
     const float bend = cosine < least ? least - cosine : 0.0f;
     return vec_normalize(n + view * bend);
 }
+
+// A shading normal that sends the mirror direction below the face is bent until that direction lies
+// just above, so that a mirror loses no light (Keller et al., "The Iray Light Transport Simulation
+// and Rendering System", 2017, appendix A.3, local shading normal adaption). Unit vectors; `face`
+// and `view` are on one side.
+SHARED float3 normal_mirroring(float3 n, float3 face, float3 view)
+{
+    const float least = math_lesser(0.9f * vec_dot(face, view), 0.01f);
+    const float3 mirrored = vec_reflect(view, n);
+    const float height = vec_dot(face, mirrored);
+    const float lift = height < least ? least - height : 0.0f;
+    const float3 halfway = vec_normalize(view + vec_normalize(mirrored + face * lift));
+    return select3(lift > 0.0f, halfway, n);
+}

@@ -133,6 +133,7 @@ void Chunk::run_stage(Stage stage, int count)
 
 void Chunk::run_stage(Stage stage, const PathView& view, int count)
 {
+    count_rays(stage, view, count);
     const auto start = std::chrono::steady_clock::now();
     if (const StageLoop loop = kernels_.loop(stage, scene_.effects))
         loop(scene_, view, 0, count);
@@ -146,6 +147,28 @@ void Chunk::run_stage(Stage stage, const PathView& view, int count)
         scene_.textures->evaluate(scene_, view, 0, count);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     stage_seconds[stage] += elapsed.count();
+}
+
+// Of the walks of our own; Embree's packets count theirs.
+void Chunk::count_rays(Stage stage, const PathView& view, int count)
+{
+    if (embree_ || view.lookup != LOOKUP_SURFACE) return;
+    if (stage == STAGE_intersect) {
+        const int* depth = static_cast<const int*>(view.planes[row_depth]);
+        rays += std::uint64_t(std::count_if(depth, depth + count, [](int d) { return d >= 0; }));
+    }
+    if (stage == STAGE_occlusion) {
+        const auto count_lit = [&](const auto* light) {
+            for (int i = 0; i < count; ++i)
+                shadow_rays +=
+                    light[i] > 0 || light[capacity + i] > 0 || light[2 * capacity + i] > 0;
+        };
+        const void* light = view.planes[row_light_contribution];
+        if (kernels_.real_bytes == 8)
+            count_lit(static_cast<const double*>(light));
+        else
+            count_lit(static_cast<const float*>(light));
+    }
 }
 
 // Ended paths hand in their radiance; when enough have ended, the others close ranks in order.

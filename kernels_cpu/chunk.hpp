@@ -38,6 +38,7 @@ public:
 private:
     void run_stage(Stage stage, int count);
     void run_stage(Stage stage, const PathView& view, int count);
+    void count_rays(Stage stage, const PathView& view, int count);
     void trace_paths(int count);
     int compact(int count);
     void retire(int count);

@@ -125,7 +125,7 @@ SHARED void evaluate_surface(const Scene* scene, const Paths* paths, int i)
     normal = select3(is_front, normal, -normal);
     const float3 face_normal = select3(is_front, outside, -outside);
     if (uses(scene, EFFECT_SMOOTH_NORMALS | EFFECT_NORMAL_MAP))
-        normal = normal_facing(normal, view);
+        normal = normal_mirroring(normal_facing(normal, view), face_normal, view);
 
     const float4 base_texel =
         surface_slot(scene, paths, i, weights, scene->materials[material].base_slot, SLOT_BASE,

@@ -29,10 +29,11 @@ public:
         return {.requests = [this](double seconds) { return requests(seconds); },
                 .watch_files = [this](const auto& files,
                                       auto read_at) { watcher_.watch(files, read_at); },
-                .show = [this](const image::Picture& picture, const LiveScene& scene,
-                               const Backend&, const RenderResult* end) {
-                    if (show(picture) && end) tell_end(*end, scene);
-                },
+                .show =
+                    [this](const image::Picture& picture, const LiveScene& scene, const Backend&,
+                           const RenderResult* end) {
+                        if (show(picture) && end) tell_end(*end, scene);
+                    },
                 .tell = [this](const std::string& line) { tell(line); },
                 .warn =
                     [](const std::string& message) {
@@ -122,8 +123,10 @@ CLI::App* add_watch_command(CLI::App& app, WatchCommand& command)
     add_device_flags(*watch, command.render.device);
     add_error_flags(*watch, command.render.error);
     watch->footer(
-        "The pictures are written anew as samples come, and hold --samples in the end, or what --error "
-        "and --time ask\nfor; an edit begins the time again. Saving a texture's file makes its stage anew; changing arguments in the scene's file, or typing "
+        "The pictures are written anew as samples come, and hold --samples in the end, or what "
+        "--error "
+        "and --time ask\nfor; an edit begins the time again. Saving a texture's file makes its "
+        "stage anew; changing arguments in the scene's file, or typing "
         "NODE.ARGUMENT=JSON, compiles\nnothing; any other change loads the scene again. An edit "
         "that fails is told and not taken.\n"
         "`quit` or SIGINT end it with the picture as it is.\n"

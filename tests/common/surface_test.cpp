@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace {
 
 using namespace diptych;
@@ -77,6 +79,37 @@ TEST(Surface, A_normal_map_leans_the_same_way_on_merged_and_instanced_meshes)
             EXPECT_NEAR(n.z, expected[2], 1e-3);
         }
     }
+}
+
+float3 random_unit(std::mt19937& random)
+{
+    std::normal_distribution<float> normal;
+    return vec_normalize(make_float3(normal(random), normal(random), normal(random)));
+}
+
+TEST(Surface, A_bent_normal_mirrors_to_above_the_face_and_others_stay)
+{
+    std::mt19937 random(7);
+    int bent = 0;
+    for (int k = 0; k < 100000; ++k) {
+        const float3 face = random_unit(random);
+        float3 view = random_unit(random);
+        if (vec_dot(face, view) < 0) view = -view;
+        // From flat to leaning as far as maps can.
+        const float lean = 3.0f * float(k) / 100000;
+        const float3 n = normal_facing(vec_normalize(face + random_unit(random) * lean), view);
+        const float3 used = normal_mirroring(n, face, view);
+        ASSERT_NEAR(vec_length(used), 1, 1e-5f);
+        ASSERT_GT(vec_dot(used, view), 0);
+        ASSERT_GT(vec_dot(face, vec_reflect(view, used)), -1e-6f);
+        const bool was_valid = vec_dot(face, vec_reflect(view, n)) >= 0.01f;
+        if (was_valid) {
+            ASSERT_TRUE(used.x == n.x && used.y == n.y && used.z == n.z);
+        }
+        bent += was_valid ? 0 : 1;
+    }
+    EXPECT_GT(bent, 10000);
+    EXPECT_LT(bent, 90000);
 }
 
 }  // namespace

@@ -83,6 +83,31 @@ TEST_P(Determinism, StoppedAndResumedARenderHasTheSameBits)
     EXPECT_TRUE(is_same(whole, image::beauty_of(state->film.picture()).pixels));
 }
 
+// Camera rays alone when nothing scatters; else as many as the cpu backend traces, but for the few
+// paths that rounding sends another way. OpenCL counts a ray for each path that it
+// launches, those of a block that lie outside the picture too.
+TEST_P(Determinism, RaysAreCounted)
+{
+    const auto count = [](Backend& backend, int bounces) {
+        SceneData scene = busy_scene(40, 24);
+        scene.settings[0].max_bounces = bounces;
+        backend.upload(scene);
+        render(backend, scene, with_samples(16));
+        return backend.statistics();
+    };
+    const bool is_bound = GetParam() == "opencl";
+    const Statistics seen = count(*make_backend(GetParam(), {}), 0);
+    EXPECT_EQ(seen.rays, (is_bound ? 48u * 32 : 40u * 24) * 16);
+    const Statistics own = count(*make_backend(GetParam(), {}), 3);
+    const Statistics cpu = count(*make_backend("cpu", {}), 3);
+    const double few = 0.001;
+    EXPECT_GE(double(own.rays), (1 - few) * double(cpu.rays));
+    EXPECT_GE(double(own.shadow_rays), (1 - few) * double(cpu.shadow_rays));
+    if (is_bound) return;
+    EXPECT_LE(double(own.rays), (1 + few) * double(cpu.rays));
+    EXPECT_LE(double(own.shadow_rays), (1 + few) * double(cpu.shadow_rays));
+}
+
 TEST_P(Determinism, OnePixelAloneHasItsValueInThePicture)
 {
     SceneData scene = busy_scene(40, 24);

@@ -45,6 +45,25 @@ TEST_P(Furnace, DielectricsVanishAtEveryRoughness)
     }
 }
 
+// A mirror is as lossless with a normal map, however steep: no direction goes into the surface. One
+// flat side, so that light is reflected once.
+TEST_P(Furnace, MirrorsVanishWhereverTheirNormalsLean)
+{
+    for (const float lean : {0.3f, 1.0f, 3.0f}) {
+        SCOPED_TRACE(lean);
+        SceneBuilder scene;
+        const float length = 2 * std::sqrt(1 + lean * lean);
+        const int bumps = scene.add_image(
+            {1, 1, {}, {0.5f + lean / length, 0.5f, 0.5f + 1 / length, 1}, false, 0});
+        const int mirror =
+            scene.add_material({.metallic = 1, .roughness = 0, .normal_texture = {.image = bumps}});
+        scene.place(scene.add_mesh(quad_mesh({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, mirror)));
+        scene.set_environment(environment_of([](const Vec3&) { return 1.0; }));
+        look(scene, {-0.5, 1.5, 1.2}, {0, 0, 0}, 0.9);
+        EXPECT_TRUE(obeys(measure(finish(scene)), 1, 0.001));
+    }
+}
+
 // GI-2: N scattering events in a closed room whose walls all shine.
 SceneData closed_furnace(float reflectance, int bounces)
 {

@@ -168,8 +168,7 @@ TEST_F(WatchCommandLine, RendersUntilTheErrorIsSmallEnough)
     ASSERT_TRUE(watch.says("complete, written"));
     watch.type("quit\n");
     EXPECT_EQ(watch.exit_code(), 0);
-    EXPECT_EQ(pixels("out.exr"),
-              rendered({"--set", "paint.scale=3", "--error", "2"}, "512"));
+    EXPECT_EQ(pixels("out.exr"), rendered({"--set", "paint.scale=3", "--error", "2"}, "512"));
 }
 
 TEST_F(WatchCommandLine, EndsItsPicturesWhenTheTimeIsOver)
