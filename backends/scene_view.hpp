@@ -9,7 +9,7 @@ namespace diptych {
 
 // Readable memory behind every pointer: a kernel may load from the start of a buffer that the scene
 // left empty.
-alignas(64) inline constexpr unsigned char no_data[256] = {};
+alignas(64) inline constexpr unsigned char no_data[512] = {};
 
 // In the order of SCENE_BUFFERS; the scene must outlive their use.
 inline std::vector<const void*> buffers_of(const SceneData& scene)

@@ -49,6 +49,7 @@ typedef struct {
     int occlusion_rays;     // of each request that a texture makes, a path
     float time;             // seconds, for textures that ask
     int samples;            // a pixel's
+    int sequence_quanta;    // log2 of the quanta in a sample sequence: see common/random.h
     int object_frames;      // word of the materials' buffer: see object_position; -1: not asked for
 } Settings;
 

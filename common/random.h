@@ -1,14 +1,15 @@
 // Sample values: a function of (seed, pixel, sample, dimension) and of nothing else.
 //
-// Sample s of a pixel belongs to batch (s / 16) % 8. Each batch is an Owen-scrambled Sobol sequence
+// Sample s of a pixel belongs to batch (s / n) % 8. Each batch is an Owen-scrambled Sobol sequence
 // with a scrambling of its own, so that the spread of batch means measures the real error of the
-// picture. Dimensions come in pairs: each pair is the first two Sobol dimensions, with its own
-// shuffling of the index and its own scrambling of the values (Burley, "Practical Hash-based Owen
-// Scrambling", JCGT 9(4), 2020), no tables and no loops.
-// The first 16 samples of a batch continue one sequence from pixel to pixel in Morton order (Ahmed
-// and Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error", 2020), which
-// spreads the error over neighbouring pixels like blue noise; later ones follow a sequence of the
-// pixel's own.
+// picture; n is 16. A render that needs no such measure takes all its samples from one batch (n is
+// the power of two that they fit in): where light is smooth, its error falls faster. Dimensions
+// come in pairs: each pair is the first two Sobol dimensions, with its own shuffling of the index
+// and its own scrambling of the values (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4),
+// 2020), no tables and no loops. The first n samples of a batch continue one sequence from pixel to
+// pixel in Morton order (Ahmed and Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo
+// Sampling Error", 2020), which spreads the error over neighbouring pixels like blue noise; later
+// ones follow a sequence of the pixel's own.
 #pragma once
 
 #include "platform.h"
@@ -85,17 +86,18 @@ typedef struct {
     uint seed;
 } SampleKey;
 
-// pixel: x | y << 16
-SHARED SampleKey sample_key(uint seed, int pixel, int sample)
+// pixel: x | y << 16; sequence_quanta: log2(n / 16).
+SHARED SampleKey sample_key(uint seed, int sequence_quanta, int pixel, int sample)
 {
-    const uint batch = ((uint)sample >> 4) & 7u;
-    const uint round = (uint)sample >> 7;
-    const uint within = (uint)sample & 15u;
+    const int bits = 4 + sequence_quanta;
+    const uint batch = ((uint)sample >> bits) & 7u;
+    const uint round = (uint)sample >> (bits + 3);
+    const uint within = (uint)sample & ((1u << bits) - 1u);
     const uint shared_seed = hash_pair(seed, batch);
     const uint own_seed = hash_pair(shared_seed, (uint)pixel);
     const uint morton = morton_code(pixel & 0xffff, (int)((uint)pixel >> 16));
     SampleKey key;
-    key.index = ((round == 0u ? morton : round) << 4) | within;
+    key.index = ((round == 0u ? morton : round) << bits) | within;
     key.seed = round == 0u ? shared_seed : own_seed;
     return key;
 }

@@ -16,7 +16,8 @@ SHARED void generate_path(const Scene* scene, const Paths* paths, int i, int ite
     const int pixel = x | y << 16;
     const int is_inside = (x < scene->settings[0].width) & (y < scene->settings[0].height);
 
-    const SampleKey key = sample_key(scene->settings[0].seed, pixel, sample);
+    const SampleKey key =
+        sample_key(scene->settings[0].seed, scene->settings[0].sequence_quanta, pixel, sample);
     const float2 offset =
         filter_sample(scene->settings[0].filter, sample_pair(key, PAIR_PIXEL_FILTER));
     const Ray ray = camera_ray(scene, (float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y);

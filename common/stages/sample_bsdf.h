@@ -31,8 +31,8 @@ SHARED void sample_bsdf(const Scene* scene, const Paths* paths, int i)
         const int is_lit = get_is_occluded(paths, i) == 0;
         set_radiance(paths, i, select3(is_lit, lit, get_radiance(paths, i)));
     }
-    const SampleKey key =
-        sample_key(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i));
+    const SampleKey key = sample_key(scene->settings[0].seed, scene->settings[0].sequence_quanta,
+                                     get_pixel(paths, i), get_sample(paths, i));
     const float2 u = sample_bounce_pair(key, depth, PAIR_SCATTER);
     const float3 face_normal = get_face_normal(paths, i);
     const Frame frame = frame_of(get_normal(paths, i));

@@ -13,8 +13,8 @@ SHARED void sample_light(const Scene* scene, const Paths* paths, int i)
     const int kind = get_surface_kind(paths, i);
     const int may_scatter =
         (depth >= 0) & (depth < scene->settings[0].max_bounces) & (kind == SURFACE_LIT);
-    const SampleKey key =
-        sample_key(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i));
+    const SampleKey key = sample_key(scene->settings[0].seed, scene->settings[0].sequence_quanta,
+                                     get_pixel(paths, i), get_sample(paths, i));
     const float2 choice = sample_bounce_pair(key, depth, PAIR_CHOICE);
     const float2 on_light = sample_bounce_pair(key, depth, PAIR_LIGHT);
 

@@ -55,8 +55,8 @@ typedef struct {
 SHARED uint texture_ray_seed(const Scene* scene, const Paths* paths, int i, TexturePlace place,
                              int request)
 {
-    const SampleKey key =
-        sample_key(scene->settings[0].seed, get_pixel(paths, i), get_sample(paths, i));
+    const SampleKey key = sample_key(scene->settings[0].seed, scene->settings[0].sequence_quanta,
+                                     get_pixel(paths, i), get_sample(paths, i));
     const uint bits = (uint)(get_depth(paths, i) * 64 + request);
     const uint where =  // else a surface and what it is lit by would be seen through the same rays
         paths->lookup == LOOKUP_SURFACE

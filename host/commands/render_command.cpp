@@ -204,7 +204,7 @@ int run_render_command(const RenderCommand& command)
     RenderCheckpoint checkpoint(run.checkpoint);
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
-    SceneData scene = load_from_flags(run.scene);
+    SceneData scene = load_from_flags(run.scene, is_adaptive(options));
     check_film_fits(scene.settings[0], options);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
     std::optional<RenderState> start =

@@ -2,6 +2,7 @@
 
 #include "backends/device_list.hpp"
 #include "common/textures/procedural.h"
+#include "host/render/film.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -217,7 +218,7 @@ void add_device_options(CLI::App& app, DeviceFlags& flags)
                    "Run the edited copy of that code in this folder instead");
 }
 
-SceneData load_from_flags(const SceneFlags& flags)
+SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
 {
     LoadOptions load = load_options_from(flags);
     if (!load.solo.empty()) load.environment = "none";
@@ -236,6 +237,7 @@ SceneData load_from_flags(const SceneFlags& flags)
     settings.max_bounces = load.solo.empty() ? bounces : 0;
     settings.filter = filter;
     settings.samples = flags.samples;
+    settings.sequence_quanta = is_adaptive ? 0 : sequence_quanta_of(flags.samples);
     settings.width = load.width;
     settings.height = load.height;
     return scene;

@@ -40,8 +40,9 @@ void add_view_flags(CLI::App& app, SceneFlags& flags);  // without the scene's n
 void add_device_flags(CLI::App& app, DeviceFlags& flags);
 void add_device_options(CLI::App& app, DeviceFlags& flags);  // without --backend
 
-// Checks what the flags say and loads the scene, settings filled in. Throws std::runtime_error.
-SceneData load_from_flags(const SceneFlags& flags);
+// Checks what the flags say and loads the scene, settings filled in: for a render with an error or
+// time target, or with --samples alone. Throws std::runtime_error.
+SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive = false);
 BackendOptions options_from_flags(const DeviceFlags& flags);
 // For commands that can use several devices: the flags with the backend that --device asks for.
 DeviceFlags with_device_list(const DeviceFlags& flags);

@@ -88,6 +88,8 @@ std::string difference_between(const CheckpointSubject& a, const CheckpointSubje
     compare("filter", filter_name(p.filter), filter_name(q.filter));
     compare("samples, which a texture reads", fmt::format("{}", p.samples),
             fmt::format("{}", q.samples));
+    compare("samples in a sequence", fmt::format("{}", QUANTUM << p.sequence_quanta),
+            fmt::format("{}", QUANTUM << q.sequence_quanta));
     if (p.width == q.width && p.height == q.height && !has_same_camera(p, q))
         found.push_back("camera");
     if (!has_same_environment(p, q)) found.push_back("environment's rotation or scale");

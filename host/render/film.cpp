@@ -40,6 +40,14 @@ std::vector<Value> padded(std::vector<Value> in, const Window& window, int width
 
 int batches_of(int end) { return std::clamp((end + QUANTUM - 1) / QUANTUM, 1, batch_count); }
 
+int sequence_quanta_of(int samples)
+{
+    int quanta = 0;
+    if (samples < standard_error_samples)
+        while ((QUANTUM << quanta) < samples) ++quanta;
+    return quanta;
+}
+
 Film::Film(int width, int height, const Window& window, int batches)
     : width_(width), height_(height)
 {

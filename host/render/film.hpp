@@ -50,6 +50,10 @@ struct FilmData {
 // How many batches the samples 0 to end - 1 fall into.
 int batches_of(int end);
 
+// Settings::sequence_quanta of a uniform render of so many samples a pixel: below
+// standard_error_samples no batches are told apart, and one sequence holds all samples.
+int sequence_quanta_of(int samples);
+
 class Film {
 public:
     // Keeps only what lies in the window. batches: batches_of the last sample's number plus one.

@@ -6,7 +6,9 @@
 namespace diptych {
 namespace {
 
-constexpr float seen_from_pixel_to_pixel = 2.5f;  // L*
+// L*. With 2.5, as white noise asks for on its own, a Cornell box that is done differs from the
+// truth by FLIP 0.062 (99th percentile), and 0.0575 is seen; with 2.0 by 0.057.
+constexpr float seen_from_pixel_to_pixel = 2.0f;
 constexpr float most_masking = 2;  // edges of objects have any contrast, and hide nothing
 
 }  // namespace

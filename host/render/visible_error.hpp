@@ -15,9 +15,9 @@ struct Viewer {
 float lightness(const image::Rgb& radiance, const Viewer& viewer);
 
 // JND between two radiances of a pixel: their difference in L* over what is just seen from pixel to
-// pixel (2.5 at 67 pixels per degree). A textured surface hides more: by 1 + 10 * contrast, taken
-// to hide at most twice as much. contrast: standard deviation of the albedo around the pixel over
-// its mean.
+// pixel (2 at 67 pixels per degree, measured with FLIP). A textured surface hides more: by 1 + 10 *
+// contrast, taken to hide at most twice as much. contrast: standard deviation of the albedo around
+// the pixel over its mean.
 float visible_difference(const image::Rgb& a, const image::Rgb& b, float contrast,
                          const Viewer& viewer);
 

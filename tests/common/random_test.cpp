@@ -30,11 +30,11 @@ bool is_net(const std::vector<float2>& points, int bits)
     return true;
 }
 
-std::vector<float2> samples(int pixel, int first, int count, int dimension)
+std::vector<float2> samples(int pixel, int first, int count, int dimension, int quanta = 0)
 {
     std::vector<float2> points;
     for (int s = first; s < first + count; ++s)
-        points.push_back(sample_pair(sample_key(7u, pixel, s), dimension));
+        points.push_back(sample_pair(sample_key(7u, quanta, pixel, s), dimension));
     return points;
 }
 
@@ -62,6 +62,24 @@ TEST(Random, NeighbouringPixelsContinueTheNet)
     }
 }
 
+// One sequence for all samples: each pixel's are a net, and so are those of its neighbourhood.
+TEST(Random, LongSequencesAreNetsOfAllTheirSamples)
+{
+    for (const int quanta : {1, 2, 3}) {
+        const int count = QUANTUM << quanta, bits = 4 + quanta;
+        for (const int dimension : {0, 2, 11}) {
+            std::vector<float2> block;
+            for (int k = 0; k < 4; ++k) {
+                const std::vector<float2> own =
+                    samples(pixel_at(8 + (k & 1), 20 + (k >> 1)), 0, count, dimension, quanta);
+                ASSERT_TRUE(is_net(own, bits));
+                block.insert(block.end(), own.begin(), own.end());
+            }
+            ASSERT_TRUE(is_net(block, bits + 2));
+        }
+    }
+}
+
 // Rounds of a batch continue the pixel's own sequence: two of them are a larger net.
 TEST(Random, LaterRoundsContinueTheirSequence)
 {
@@ -74,15 +92,15 @@ TEST(Random, LaterRoundsContinueTheirSequence)
 
 TEST(Random, EveryCoordinateOfASampleMatters)
 {
-    const float2 a = sample_pair(sample_key(1u, pixel_at(3, 4), 5), 6);
-    const float2 again = sample_pair(sample_key(1u, pixel_at(3, 4), 5), 6);
+    const float2 a = sample_pair(sample_key(1u, 0, pixel_at(3, 4), 5), 6);
+    const float2 again = sample_pair(sample_key(1u, 0, pixel_at(3, 4), 5), 6);
     EXPECT_EQ(a.x, again.x);
     EXPECT_EQ(a.y, again.y);
-    EXPECT_NE(a.x, sample_pair(sample_key(2u, pixel_at(3, 4), 5), 6).x);
-    EXPECT_NE(a.x, sample_pair(sample_key(1u, pixel_at(4, 4), 5), 6).x);
-    EXPECT_NE(a.x, sample_pair(sample_key(1u, pixel_at(3, 5), 5), 6).x);
-    EXPECT_NE(a.x, sample_pair(sample_key(1u, pixel_at(3, 4), 6), 6).x);
-    EXPECT_NE(a.x, sample_pair(sample_key(1u, pixel_at(3, 4), 5), 7).x);
+    EXPECT_NE(a.x, sample_pair(sample_key(2u, 0, pixel_at(3, 4), 5), 6).x);
+    EXPECT_NE(a.x, sample_pair(sample_key(1u, 0, pixel_at(4, 4), 5), 6).x);
+    EXPECT_NE(a.x, sample_pair(sample_key(1u, 0, pixel_at(3, 5), 5), 6).x);
+    EXPECT_NE(a.x, sample_pair(sample_key(1u, 0, pixel_at(3, 4), 6), 6).x);
+    EXPECT_NE(a.x, sample_pair(sample_key(1u, 0, pixel_at(3, 4), 5), 7).x);
 }
 
 // A smooth integrand of mean 0.

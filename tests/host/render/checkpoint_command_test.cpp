@@ -183,7 +183,7 @@ TEST_F(CheckpointCommand, MergeTellsWhatIsMissingAndRefusesWhatDoesNotFit)
 TEST_F(CheckpointCommand, RefusesToGoOnFromAnotherPicture)
 {
     ASSERT_EQ(
-        render({"--samples", "48", "--checkpoint", file_, "--quiet", "-o", picture_}).exit_code, 0);
+        render({"--samples", "144", "--checkpoint", file_, "--quiet", "-o", picture_}).exit_code, 0);
     const std::string before = bytes_of_file(file_);
     const auto refuse = [&](std::vector<std::string> more, const std::string& what) {
         more.insert(more.begin(), kept_.begin(), kept_.end());
@@ -192,8 +192,9 @@ TEST_F(CheckpointCommand, RefusesToGoOnFromAnotherPicture)
     };
     refuse({"--seed", "2"}, "differ in seed (1 and 2)");
     refuse({"--size", "32x48"}, "differ in size (48x32 and 32x48)");
-    refuse({"--samples", "32"}, "holds samples 0..48");
-    refuse({"--range", "16..320"}, "holds samples 0..48, not from 16 on");
+    refuse({"--samples", "128"}, "holds samples 0..144");
+    refuse({"--samples", "64"}, "samples in a sequence (16 and 64)");
+    refuse({"--range", "16..320"}, "holds samples 0..144, not from 16 on");
     refuse({"--pixel", "1,1"}, "--checkpoint: not for a single pixel");
     refuse({"--every", "0"}, "--every 0: not a time");
     refuse({"--every", "soon"}, "--every soon: not a time");

@@ -30,11 +30,11 @@ TEST(VisibleError, IsSeenThroughExposureAndView)
 
 TEST(VisibleError, CountsInJustNoticeableDifferences)
 {
-    EXPECT_NEAR(visible_difference(grey(0.5f), grey(0.18f), 0, {}), 10.6293, 1e-3);
-    EXPECT_NEAR(visible_difference(grey(0.18f), grey(0.5f), 0.05f, {}), 7.08618, 1e-3);
-    EXPECT_NEAR(visible_difference(grey(0.18f), grey(0.5f), 5, {}), 5.31464, 1e-3);  // at most 2
-    EXPECT_NEAR(visible_error(grey(0.18f), grey(0.01f), 0, {}), 0.4854, 5e-4);
-    EXPECT_NEAR(visible_error(grey(0.001f), grey(0.002f), 0, {}), 0.541978, 1e-4);
+    EXPECT_NEAR(visible_difference(grey(0.5f), grey(0.18f), 0, {}), 13.2866, 1e-3);
+    EXPECT_NEAR(visible_difference(grey(0.18f), grey(0.5f), 0.05f, {}), 8.85772, 1e-3);
+    EXPECT_NEAR(visible_difference(grey(0.18f), grey(0.5f), 5, {}), 6.64330, 1e-3);  // at most 2
+    EXPECT_NEAR(visible_error(grey(0.18f), grey(0.01f), 0, {}), 0.60675, 6e-4);
+    EXPECT_NEAR(visible_error(grey(0.001f), grey(0.002f), 0, {}), 0.677473, 1e-4);
     EXPECT_EQ(visible_error(grey(4), grey(1), 0, {}), 0);  // white either way
 }
 
