@@ -121,7 +121,9 @@ TEST(Devices, ACheckpointIsContinuedByOthers)
     const TestFolder folder;
     const Rendered one = render(folder, {"--backend", "opencl", "--samples", "64"});
     const std::string file = folder / "c";
-    ASSERT_EQ(render(folder, {"--device", "0,1", "--checkpoint", file}).outcome.exit_code, 0);
+    ASSERT_EQ(render(folder, {"--device", "0,1", "--samples", "48", "--checkpoint", file})
+                  .outcome.exit_code,
+              0);
     const Rendered more =
         render(folder, {"--backend", "opencl", "--samples", "64", "--checkpoint", file});
     EXPECT_TRUE(is_same(one, more)) << more.outcome.text();
