@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <numeric>
 #include <stdexcept>
 #include <thread>
 
@@ -49,8 +50,9 @@ public:
         // Embree's high-quality tree takes about 100 bytes a triangle, ours 64 a node and 4 an
         // item.
         plan.structure_bytes = scene.triangles.size() * (uses_embree_ ? 100 : 40);
-        const size_t result_bytes = size_t(result_rows + 6) * kernels_.real_bytes
-                                    << (2 * BLOCK_SHIFT);
+        const auto of_textures = texture_result_planes(scene);
+        const int planes = std::accumulate(of_textures.begin(), of_textures.end(), result_rows + 6);
+        const size_t result_bytes = size_t(planes) * kernels_.real_bytes << (2 * BLOCK_SHIFT);
         const size_t chunk_bytes = size_t(chunk_paths) * 80 * kernels_.real_bytes;
         const size_t fixed = chunk_bytes * threads_;
         if (options_.memory_bytes < fixed + result_bytes)

@@ -68,7 +68,7 @@ private:
 
     SceneMemory scene_;
     DispatchMemory memory_;
-    std::array<int, 5> texture_planes_{};  // of each row
+    std::array<int, texture_rows> texture_planes_{};  // of each row
     OpenclStages stages_;
     unsigned effects_ = 0;
 

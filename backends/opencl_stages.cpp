@@ -119,7 +119,8 @@ void OpenclStages::show_records(StageKernel& runs, Stage stage, int lookup)
     runs.kernel.set(argument(LOOKUP), lookup);
     const int first = int(scene_->rows.size());
     const bool is_own = !is_over_records(stage, lookup);
-    for (const StandIn& record : lookup == LOOKUP_ALPHA ? path_records : shadow_records) {
+    const bool is_on_path = LOOKUP_PLACE(lookup) == LOOKUP_ALPHA;
+    for (const StandIn& record : is_on_path ? path_records : shadow_records) {
         const std::vector<opencl::Buffer>& planes =
             record.is_texture_row && !is_own ? memory_->texture_planes : memory_->path_planes;
         runs.kernel.set(first + record.row, planes[size_t(is_own ? record.row : record.by)]);
@@ -132,7 +133,8 @@ void OpenclStages::run(Stage stage, const Selection& all)
     Selection waiting = all;
     int turn = 0;
     const auto launch = [&](Stage launched, int lookup) {
-        const bool is_rounds = lookup == LOOKUP_ALPHA || lookup == LOOKUP_SHADOW;
+        const int place = LOOKUP_PLACE(lookup);
+        const bool is_rounds = place == LOOKUP_ALPHA || place == LOOKUP_SHADOW;
         launch_over(launched, lookup, is_rounds ? waiting : all);
     };
     const auto count_waiting = [&] {

@@ -29,16 +29,17 @@ struct SceneData {
 };
 
 // How many planes each row of TEXTURE_BUFFERS has, and of TEXTURE_RESULT_BUFFERS.
-inline std::array<int, 5> texture_planes(const SceneData& scene)
+inline std::array<int, 7> texture_planes(const SceneData& scene)
 {
     const SceneTextures& textures = scene.textures;
     const int records = textures.records;
-    return {textures.occlusion_results, 4 * textures.outputs, records, records, records};
+    return {textures.occlusion_results, 4 * textures.outputs,         records, records, records,
+            textures.distances,         4 * int(textures.aovs.size())};
 }
-inline std::array<int, 1> texture_result_planes(const SceneData& scene)
+inline std::array<int, 2> texture_result_planes(const SceneData& scene)
 {
     const bool has_textures = (scene.effects & EFFECT_PROCEDURAL) != 0;
-    return {has_textures ? TEXTURE_FAULT_COUNT : 0};
+    return {has_textures ? TEXTURE_FAULT_COUNT : 0, 4 * int(scene.textures.aovs.size())};
 }
 
 }  // namespace diptych

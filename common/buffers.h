@@ -98,12 +98,17 @@
 //   texture_result:   four of each SLOT_* that some material of the scene computes
 //   record_...:       a place away from the one that the path has met, where a texture is asked;
 //                     triangle -1: nowhere (see LOOKUP_*)
+//   request_distance: of each node that gives requests their distance
+//   first_aov:        four of each node that is shown as a layer, where the path has first met a
+//                     surface; stays in its slot
 #define TEXTURE_BUFFERS(X)     \
     X(float, occlusion_result) \
     X(float, texture_result)   \
     X(int, record_triangle)    \
     X(int, record_instance)    \
-    X(float, record_distance)
+    X(float, record_distance)  \
+    X(float, request_distance) \
+    X(float, first_aov)
 
 // Textures are asked at the place that a path has met, or at its record. Whoever launches a stage
 // for records hands it a view where their planes stand for hit_triangle and hit_instance, and those
@@ -112,6 +117,12 @@
 #define LOOKUP_EMISSION 1  // at the point chosen on a light
 #define LOOKUP_ALPHA 2     // where the path's ray has been stopped, to learn whether it stays so
 #define LOOKUP_SHADOW 3    // likewise the shadow ray
+#define LOOKUP_AOV 4       // at the place that the path has met first, for layers of the picture
+
+// Added to one of these: what is asked is how far occlusion is to reach there, before its rays are
+// traced.
+#define LOOKUP_DISTANCE 8
+#define LOOKUP_PLACE(lookup) ((lookup)&7)
 
 // What may be wrong with an evaluation of a texture; each is counted for its path's pixel.
 #define TEXTURE_FAULT_NOT_FINITE 0  // evaluations whose result was replaced
@@ -121,7 +132,10 @@
 
 // Planes of result entries whose number the scene decides, none in most.
 //   texture_faults: of each TEXTURE_FAULT_*, how often it occurred
-#define TEXTURE_RESULT_BUFFERS(X) X(int, texture_faults)
+//   sum_aov:        as first_aov, summed
+#define TEXTURE_RESULT_BUFFERS(X) \
+    X(int, texture_faults)        \
+    X(float, sum_aov)
 
 #define SCENE_FIELD(type, name) GLOBAL const STORED(type) * name;
 #define PATH_FIELD(type, name, life) GLOBAL PLANE(type) * name;

@@ -22,13 +22,19 @@
     X(PROCEDURAL, 15, "procedural textures")                                 \
     X(TEXTURE_OCCLUSION, 16, "occlusion that textures ask for")              \
     X(PROCEDURAL_EMISSION, 17, "procedural textures on lights")              \
-    X(PROCEDURAL_ALPHA, 18, "alpha from procedural textures")
+    X(PROCEDURAL_ALPHA, 18, "alpha from procedural textures")                \
+    X(TEXTURE_AOV, 19, "layers that show texture nodes")                     \
+    X(OCCLUSION_DISTANCE, 20, "occlusion whose distance a texture gives")
 
 #define EFFECT_BIT(name, bit, words) EFFECT_##name = 1 << bit,
 enum { EFFECTS_LIST(EFFECT_BIT) };
 
 // What calls for users' code, and for the stages about it.
-#define USER_TEXTURE_EFFECTS (EFFECT_PROCEDURAL | EFFECT_TEXTURE_OCCLUSION | RECORD_EFFECTS)
+#define USER_TEXTURE_EFFECTS \
+    (EFFECT_PROCEDURAL | EFFECT_TEXTURE_OCCLUSION | RECORD_EFFECTS | ASIDE_EFFECTS)
+
+// What textures are run for aside from what surfaces read.
+#define ASIDE_EFFECTS (EFFECT_TEXTURE_AOV | EFFECT_OCCLUSION_DISTANCE)
 
 // What asks textures away from the place that a path has met.
 #define RECORD_EFFECTS (EFFECT_PROCEDURAL_EMISSION | EFFECT_PROCEDURAL_ALPHA)

@@ -6,7 +6,7 @@
 
 // X(struct, bytes): checked by every compiler that sees it.
 #define STORED_STRUCTS(X) \
-    X(Settings, 256)      \
+    X(Settings, 272)      \
     X(Triangle, 16)       \
     X(Instance, 128)      \
     X(Material, 128)      \
@@ -51,6 +51,8 @@ typedef struct {
     int samples;            // a pixel's
     int sequence_quanta;    // log2 of the quanta in a sample sequence: see common/random.h
     int object_frames;      // word of the materials' buffer: see object_position; -1: not asked for
+    int aov_count;          // texture nodes that layers of the picture show
+    int reserved[3];
 } Settings;
 
 #define MOST_ENVIRONMENT_CELLS 1024  // in a row or a column: ten halvings find one
@@ -106,19 +108,23 @@ typedef struct {
     int emission_slot;
     int specular_slot;
     int specular_color_slot;
-    int texture_program[3];  // of each PROGRAM_*: where in the words of the materials it lies; 0:
+    int texture_program[6];  // of each PROGRAM_*: where in the words of the materials it lies; 0:
                              // none
-    float4 reserved_effects;
+    int reserved;
 } Material;
 
 // In place of a texture slot: the texture stage has computed what the material reads there.
 #define TEXTURE_PROCEDURAL (-2)
 
 // The programs of a material's textures: all that it reads where a path has met it; alpha alone;
-// emission alone.
+// emission alone; what layers of the picture show. The last two give the distances of occlusion
+// that nodes of the former ask for, those of the layers apart.
 #define PROGRAM_SURFACE 0
 #define PROGRAM_ALPHA 1
 #define PROGRAM_EMISSION 2
+#define PROGRAM_AOV 3
+#define PROGRAM_DISTANCE 4
+#define PROGRAM_AOV_DISTANCE 5
 
 // The places of a material where a texture may stand.
 #define SLOT_BASE 0

@@ -102,8 +102,10 @@ void Chunk::run(const PathView& results, int first_result, const void* item)
         const int count = at_once << shift;
         trace_paths(count);
         view_.planes = retired_planes_.data();
-        for (view_.turn = 0; view_.turn < at_once; ++view_.turn)
+        for (view_.turn = 0; view_.turn < at_once; ++view_.turn) {
             run_stage(STAGE_accumulate, 1 << shift);
+            if (scene_.effects & EFFECT_TEXTURE_AOV) run_stage(STAGE_accumulate_aovs, 1 << shift);
+        }
         view_.planes = planes_.data();
         paths += std::uint64_t(count);
     }

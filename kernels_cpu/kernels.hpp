@@ -47,7 +47,7 @@ struct TextureKernels {
     // The same for one path, step by step; not there where the stage is vectorised.
     void (*watch)(const SceneView&, const PathView&, int path, TextureWatch,
                   void* watcher) = nullptr;
-    int planes[5] = {};  // of each row of TEXTURE_BUFFERS
+    int planes[7] = {};  // of each row of TEXTURE_BUFFERS
 };
 
 struct KernelSet {

@@ -29,7 +29,8 @@ public:
             PathView view = paths;
             view.lookup = lookup;
             if (is_over_records(launched, lookup))
-                view.planes = lookup == LOOKUP_ALPHA ? of_path_.data() : of_shadow_.data();
+                view.planes =
+                    LOOKUP_PLACE(lookup) == LOOKUP_ALPHA ? of_path_.data() : of_shadow_.data();
             run(launched, view);
         };
         const auto waiting = [&] {

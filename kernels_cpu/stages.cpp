@@ -50,7 +50,7 @@ constexpr unsigned variants[] = {
 int variant_for(unsigned effects)
 {
     int k = 0;
-    effects &= ~unsigned(EFFECT_TEXTURE_OCCLUSION);  // which none of these loops asks
+    effects &= ~unsigned(EFFECT_TEXTURE_OCCLUSION | ASIDE_EFFECTS);  // which no such loop asks
     while ((effects & ~variants[k]) != 0) ++k;
     return k;
 }

@@ -121,13 +121,16 @@ void keep(const Paths& paths, Lanes& lanes, int count, const TextureStep& step)
         if (lanes.verdict[k] != 0) texture_count(&paths, lanes.path[k], lanes.verdict[k]);
     for (int c = 0; c < 4 && step.slot >= 0; ++c)
         std::memcpy(lanes.stack[4 * step.slot + c], lanes.value[c], sizeof lanes.value[c]);
-    for (int output = 0; output < SLOT_COUNT; ++output) {
-        if ((step.outputs >> output & 1) == 0) continue;
-        for (int c = 0; c < 4; ++c) {
-            auto* plane = paths.texture_result + (4 * output + c) * paths.capacity;
+    const auto store = [&](float* planes, int first, int components) {
+        for (int c = 0; c < components; ++c) {
+            float* plane = planes + (first + c) * paths.capacity;
             for (int k = 0; k < count; ++k) plane[lanes.path[k]] = lanes.value[c][k];
         }
-    }
+    };
+    if (step.aov >= 0) store(paths.first_aov, 4 * step.aov, 4);
+    if (step.distance >= 0) store(paths.request_distance, step.distance, 1);
+    for (int output = 0; output < SLOT_COUNT; ++output)
+        if ((step.outputs >> output & 1) != 0) store(paths.texture_result, 4 * output, 4);
 }
 
 template<bool is_uniform>

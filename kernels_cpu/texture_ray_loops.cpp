@@ -108,7 +108,8 @@ SHARED void store_ray(const Paths* rays, const CommonToRays& common, int k, int 
     for (int k = 0; k < asking.count; ++k) {
         const TextureRequests requests = texture_requests(&scene, asking.program[k]);
         if (request >= requests.count) continue;
-        const TextureRequest asked = texture_request(&scene, requests.first, request);
+        const TextureRequest asked =
+            texture_request(&scene, &paths, asking.path[k], requests.first, request);
         const int i = asking.path[k];
         CommonToRays common;
         common.place.triangle = asking.triangle[k];

@@ -197,7 +197,7 @@ float trace_texture_ray_by_ray(const void* embree_scene, const SceneView& scene_
     asking.triangle[0] = place.triangle;
     asking.instance[0] = place.instance;
     const TextureRequests requests = texture_requests(&scene, asking.program[0]);
-    const TextureRequest asked = texture_request(&scene, requests.first, request);
+    const TextureRequest asked = texture_request(&scene, &paths, path, requests.first, request);
     const uint seed = texture_ray_seed(&scene, &paths, path, place, request);
     asking.bundles = asking.rays = 1;
     asking.path_of_bundle[0] = 0;

@@ -284,7 +284,8 @@ std::string constant_programs(const SceneData& scene, const std::vector<int>& pr
            "    return program;\n}\n"
            "SHARED TextureStep pasted_step(int word)\n{\n    TextureStep step;\n"
            "    step.function = 0;\n    step.outputs = 0;\n    step.region = 0;\n"
-           "    step.slot = -1;\n    step.first_occlusion = 0;\n" +
+           "    step.slot = -1;\n    step.first_occlusion = 0;\n"
+           "    step.aov = -1;\n    step.distance = -1;\n" +
            steps +
            "    return step;\n}\n"
            "#define texture_program(scene, word) pasted_program(word)\n"

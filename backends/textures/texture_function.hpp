@@ -50,6 +50,7 @@ struct TextureFunction {
     std::string opencl;
     std::vector<TextureArgument> arguments;
     std::vector<OcclusionRequest> occlusion;
+    int channels = 4;         // numbers in its result
     unsigned attributes = 0;  // mask of ATTRIBUTE_*
     std::vector<std::string> warnings;
     std::string description;  // by the tool, in JSON
@@ -58,7 +59,7 @@ struct TextureFunction {
 // One use of a node of the graph by a material: its arguments' region.
 struct TextureAttachment {
     std::string node;
-    int material = 0;
+    int material = 0;  // -1: all, for a layer of the picture
     int function = 0;
     int first_word = 0;  // in the words of the materials
     int words = 0;       // in whole pages
@@ -73,6 +74,14 @@ struct TextureNodeValues {
     std::map<std::string, std::string> values;
 };
 
+// A node that a layer of the picture shows.
+struct TextureAov {
+    std::string node;  // its name
+    int channels = 4;  // that it gives
+
+    bool operator==(const TextureAov&) const = default;
+};
+
 struct SceneTextures {
     std::vector<TextureFunction> functions;
     std::vector<TextureNodeValues> nodes;
@@ -82,7 +91,9 @@ struct SceneTextures {
     int outputs = 0;            // results a path that evaluate_surface reads
     int occlusion_results = 0;  // a path
     int records = 0;            // a path
-    int first_page = 0;         // of the materials' buffer that no longer holds a material
+    int distances = 0;          // of occlusion, that nodes give, a path
+    std::vector<TextureAov> aovs;
+    int first_page = 0;  // of the materials' buffer that no longer holds a material
 };
 
 }  // namespace diptych

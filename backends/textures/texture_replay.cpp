@@ -4,6 +4,7 @@
 #include "backends/textures/native_stage.hpp"
 #include "backends/textures/texture_tool.hpp"
 #include "common/as_cpp/path_rows.hpp"
+#include "common/as_cpp/texture_lookups.hpp"
 #include "common/textures/procedural.h"
 #include "kernels_cpu/kernels.hpp"
 
@@ -22,10 +23,10 @@ uint word_of(const SceneData& scene, size_t word)
     return reinterpret_cast<const uint*>(scene.materials.data())[word];
 }
 
-int program_of(const SceneData& scene, int triangle)
+int program_of(const SceneData& scene, int triangle, int lookup)
 {
     return scene.materials.at(size_t(scene.triangles.at(size_t(triangle)).material))
-        .texture_program[PROGRAM_SURFACE];
+        .texture_program[texture_program_asked(lookup)];
 }
 
 // An argument's numbers, out of the stack or the words of its region.
@@ -83,7 +84,7 @@ std::unique_ptr<NativeStage> stage_of(SceneData& scene, bool is_double, TextureR
 
 }  // namespace
 
-std::vector<TexturedPath> textured_hits(const SceneData& scene, const StageState& state)
+std::vector<TexturedPath> textured_hits(const SceneData& scene, const StageState& state, int lookup)
 {
     std::vector<TexturedPath> hits;
     const size_t paths = size_t(state.paths);
@@ -92,7 +93,8 @@ std::vector<TexturedPath> textured_hits(const SceneData& scene, const StageState
             return state.planes[size_t(row)].at(c * paths + p);
         };
         const int triangle = int(number(row_hit_triangle));
-        if (number(row_depth) < 0 || triangle < 0 || program_of(scene, triangle) == 0) continue;
+        if (number(row_depth) < 0 || triangle < 0) continue;
+        if (program_of(scene, triangle, lookup) == 0) continue;
         TextureHit hit{int(number(row_pixel)),
                        int(number(row_sample)),
                        int(number(row_depth)),
@@ -165,9 +167,10 @@ TextureReplay::TextureReplay(SceneData& scene, bool is_double, Build build)
 
 TextureReplay::~TextureReplay() = default;
 
-std::vector<TextureStepValue> TextureReplay::run(const TextureHit& hit)
+std::vector<TextureStepValue> TextureReplay::run(const TextureHit& hit, int lookup)
 {
     Implementation& own = *implementation_;
+    own.path_view.lookup = lookup;
     own.set(row_pixel, hit.pixel);
     own.set(row_sample, hit.sample);
     own.set(row_depth, hit.depth);
@@ -175,6 +178,11 @@ std::vector<TextureStepValue> TextureReplay::run(const TextureHit& hit)
     own.set(row_hit_instance, hit.instance);
     own.set(row_ray_origin, hit.origin);
     own.set(row_ray_direction, hit.direction);
+    look_up_distances(own.scene.effects, lookup, [&](Stage, int asked) {
+        PathView view = own.path_view;
+        view.lookup = asked;
+        own.stage->kernels().evaluate(own.scene_view, view, 0, 1);
+    });
     if (own.scene.effects & EFFECT_TEXTURE_OCCLUSION)
         own.kernels.loop(STAGE_trace_texture_rays, own.scene.effects)(own.scene_view, own.path_view,
                                                                       0, 1);
@@ -182,7 +190,7 @@ std::vector<TextureStepValue> TextureReplay::run(const TextureHit& hit)
         const SceneData& scene;
         int first_step;
         std::vector<TextureStepValue> steps;
-    } watcher{own.scene, program_of(own.scene, hit.triangle) + TEXTURE_PROGRAM_WORDS, {}};
+    } watcher{own.scene, program_of(own.scene, hit.triangle, lookup) + TEXTURE_PROGRAM_WORDS, {}};
     const auto see = [](void* to, const TextureStepSeen& seen) {
         Watcher& watching = *static_cast<Watcher*>(to);
         const SceneData& scene = watching.scene;

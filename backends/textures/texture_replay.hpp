@@ -32,12 +32,13 @@ struct TextureStepValue {
 };
 
 // The hits that the paths of a state have after STAGE_intersect on materials with textures, with
-// the number of the path.
+// the number of the path. lookup: LOOKUP_SURFACE, or LOOKUP_AOV for textures that layers show.
 struct TexturedPath {
     int path;
     TextureHit hit;
 };
-std::vector<TexturedPath> textured_hits(const SceneData& scene, const StageState& state);
+std::vector<TexturedPath> textured_hits(const SceneData& scene, const StageState& state,
+                                        int lookup = LOOKUP_SURFACE);
 
 class TextureReplay {
 public:
@@ -53,7 +54,7 @@ public:
     TextureReplay(const TextureReplay&) = delete;
     TextureReplay& operator=(const TextureReplay&) = delete;
 
-    std::vector<TextureStepValue> run(const TextureHit& hit);
+    std::vector<TextureStepValue> run(const TextureHit& hit, int lookup = LOOKUP_SURFACE);
 
 private:
     struct Implementation;

@@ -147,6 +147,7 @@ TextureFunction function_of(const json& all, const TextureSource& source)
     function.id = source.id;
     function.file = source.name;
     function.entry = from.at("entry").get<std::string>();
+    function.channels = width_of({"", from.at("result").get<std::string>()});
     function.description = from.dump();
     function.cpp = all.at("cpp").get<std::string>();
     function.opencl = all.at("opencl").get<std::string>();

@@ -32,18 +32,31 @@ inline constexpr StandIn shadow_records[] = {
     {row_ray_direction, false, row_shadow_direction},
 };
 
+// Runs the textures that say how far the occlusion is to reach that others ask for.
+template<typename Run>
+void look_up_distances(unsigned effects, int lookup, const Run& run)
+{
+    if ((effects & EFFECT_OCCLUSION_DISTANCE) != 0)
+        run(STAGE_evaluate_textures, lookup | LOOKUP_DISTANCE);
+}
+
 // Runs the textures for the records of all paths; run(stage, lookup) launches a stage.
 template<typename Run>
 void look_up_textures(unsigned effects, int lookup, const Run& run)
 {
-    if ((effects & EFFECT_TEXTURE_OCCLUSION) != 0) run(STAGE_trace_texture_rays, lookup);
+    if ((effects & EFFECT_TEXTURE_OCCLUSION) != 0) {
+        look_up_distances(effects, lookup, run);
+        run(STAGE_trace_texture_rays, lookup);
+    }
     run(STAGE_evaluate_textures, lookup);
 }
 
 // Whether a stage's launch for `lookup` is over the records, not over the rays that left them.
 inline bool is_over_records(Stage stage, int lookup)
 {
-    return lookup != LOOKUP_SURFACE && stage != STAGE_intersect && stage != STAGE_occlusion;
+    const int place = LOOKUP_PLACE(lookup);
+    return place != LOOKUP_SURFACE && place != LOOKUP_AOV && stage != STAGE_intersect &&
+           stage != STAGE_occlusion;
 }
 
 // Surfaces one behind another that may let a ray through by a texture's alpha; the next one stops
@@ -73,6 +86,9 @@ template<typename Run, typename Waiting>
 int run_with_lookups(Stage stage, unsigned effects, const Run& run, const Waiting& waiting)
 {
     if (stage == STAGE_scale_light) look_up_textures(effects, LOOKUP_EMISSION, run);
+    if (stage == STAGE_trace_texture_rays) look_up_distances(effects, LOOKUP_SURFACE, run);
+    if (stage == STAGE_record_features && (effects & EFFECT_TEXTURE_AOV) != 0)
+        look_up_textures(effects, LOOKUP_AOV, run);
     run(stage, LOOKUP_SURFACE);
     const bool is_ray = stage == STAGE_intersect || stage == STAGE_occlusion;
     return is_ray ? settle_alpha(stage, effects, run, waiting) : 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/stages/accumulate.h"
+#include "common/stages/accumulate_aovs.h"
 #include "common/stages/add_emission.h"
 #include "common/stages/decide_alpha.h"
 #include "common/stages/evaluate_surface.h"

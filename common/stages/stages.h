@@ -31,7 +31,8 @@
     X(occlusion, native, each_bounce, LIGHT_EFFECTS)                     \
     X(sample_bsdf, shared, each_bounce, 0)                               \
     X(compact, native, each_bounce, 0)                                   \
-    X(accumulate, shared, at_end, 0)
+    X(accumulate, shared, at_end, 0)                                     \
+    X(accumulate_aovs, shared, at_end, EFFECT_TEXTURE_AOV)
 
 #define STAGE_NUMBER(name, body, when, needs) STAGE_##name,
 typedef enum { STAGES(STAGE_NUMBER) STAGE_COUNT } Stage;

@@ -53,7 +53,7 @@ SHARED float texture_openness_at(const Scene* scene, const Paths* paths, int i, 
 {
     const TextureRequests requests = texture_requests(scene, texture_program_of(scene, paths, i));
     return texture_openness(scene, paths, i, texture_place(scene, paths, i),
-                            texture_request(scene, requests.first, number), number);
+                            texture_request(scene, paths, i, requests.first, number), number);
 }
 
 SHARED void trace_texture_rays(const Scene* scene, const Paths* paths, int i)
@@ -63,8 +63,9 @@ SHARED void trace_texture_rays(const Scene* scene, const Paths* paths, int i)
         const TextureRequests requests = texture_requests(scene, program);
         const TexturePlace place = texture_place(scene, paths, i);
         for (int k = 0; k < requests.count; ++k)
-            set_occlusion_result(paths, k, i,
-                                 texture_openness(scene, paths, i, place,
-                                                  texture_request(scene, requests.first, k), k));
+            set_occlusion_result(
+                paths, k, i,
+                texture_openness(scene, paths, i, place,
+                                 texture_request(scene, paths, i, requests.first, k), k));
     }
 }

@@ -4,9 +4,11 @@
 // words (material_word): changing an argument is changing bytes.
 //
 //   program: {steps, group, first request, requests, first step ...}, each step TEXTURE_STEP_WORDS words:
-//            {function, region, stack slot, outputs, first occlusion request, 0, 0, 0}
+//            {function, region, stack slot, outputs, first occlusion request, which layer of the
+//            picture it is, which distance; the last two from 1 on, 0: none}
 //   request: {word of its distance, hemisphere, whether of the same object only, word of the
-//            distance to take where the first is not above zero}
+//            distance to take where the first is not above zero}. A word ~d: the distance number d
+//            that PROGRAM_DISTANCE gives
 //   region:  four words an argument: {source, first word of the value, elements, 0}, then values.
 //            source >= 0: the value is what lies in that stack slot; -1: a constant.
 //   frames:  where LocalPos is asked for, OBJECT_FRAME_WORDS an object: see object_position.
@@ -78,18 +80,33 @@ typedef struct {
     int slot;
     int outputs;  // mask over the results that evaluate_surface reads
     int first_occlusion;
+    int aov;       // which of the picture's layers it is; -1: none
+    int distance;  // which distance of requests; -1: none
 } TextureStep;
 
-// The program that is run where path i asks; 0: none.
+// Which of a material's programs a lookup runs: PROGRAM_*.
+SHARED int texture_program_asked(int lookup)
+{
+    const int place = LOOKUP_PLACE(lookup);
+    const int away = place == LOOKUP_EMISSION ? PROGRAM_EMISSION : PROGRAM_ALPHA;
+    const int here = place == LOOKUP_AOV ? PROGRAM_AOV : PROGRAM_SURFACE;
+    const int distance = place == LOOKUP_AOV ? PROGRAM_AOV_DISTANCE : PROGRAM_DISTANCE;
+    const int is_here = (place == LOOKUP_SURFACE) | (place == LOOKUP_AOV);
+    return lookup >= LOOKUP_DISTANCE ? distance : is_here ? here : away;
+}
+
+// The program that is run where path i asks; 0: none. Layers ask at a path's first surface alone;
+// on a device whose slots are filled again, others are further by then.
 SHARED int texture_program_of(const Scene* scene, const Paths* paths, int i)
 {
-    const int away = paths->lookup == LOOKUP_EMISSION ? PROGRAM_EMISSION : PROGRAM_ALPHA;
-    const int which = paths->lookup == LOOKUP_SURFACE ? PROGRAM_SURFACE : away;
+    const int which = texture_program_asked(paths->lookup);
     const int hit = get_hit_triangle(paths, i);
     const int triangle = hit < 0 ? 0 : hit;
     const int program =
         scene->materials[ROW_AT(scene, triangles, triangle).material].texture_program[which];
-    const int is_dead = (hit < 0) | (get_depth(paths, i) < 0);
+    const int depth = get_depth(paths, i);
+    const int is_later = (LOOKUP_PLACE(paths->lookup) == LOOKUP_AOV) & (depth > 0);
+    const int is_dead = (hit < 0) | (depth < 0) | is_later;
     return is_dead ? 0 : program;
 }
 
@@ -111,6 +128,8 @@ SHARED TextureStep texture_step(const Scene* scene, int first, int k)
     step.slot = (int)material_word(scene, word + 2);
     step.outputs = (int)material_word(scene, word + 3);
     step.first_occlusion = (int)material_word(scene, word + 4);
+    step.aov = (int)material_word(scene, word + 5) - 1;
+    step.distance = (int)material_word(scene, word + 6) - 1;
     return step;
 }
 
@@ -232,36 +251,15 @@ SHARED int texture_verdict(const TextureContext* tx, TextureValue v)
     return (texture_is_finite(v) ? 0 : 1) | (tx->fault_line != 0 ? 2 : 0) | clamped << 2;
 }
 
-// Counts what was wrong for the pixel of path i. Sums of integers are the same in any order.
+// Counts what was wrong for the pixel of path i. Sums of integers are the same in any order. What
+// gives a distance is evaluated again for the texture that asks for it, and counted then.
 SHARED void texture_count(const Paths* paths, int i, int verdict)
 {
+    if (paths->lookup >= LOOKUP_DISTANCE) return;
     const int entry = get_entry(paths, i);
     const int counts[TEXTURE_FAULT_COUNT] = {verdict & 1, verdict >> 1 & 1, verdict >> 2};
     for (int fault = 0; fault < TEXTURE_FAULT_COUNT; ++fault) {
         if (counts[fault] != 0)
             atomic_add_int(paths->texture_faults + (fault * paths->results + entry), counts[fault]);
-    }
-}
-
-SHARED void texture_push(float* stack, int slot, TextureValue value)
-{
-    if (slot >= 0) {
-        stack[4 * slot] = value.r;
-        stack[4 * slot + 1] = value.g;
-        stack[4 * slot + 2] = value.b;
-        stack[4 * slot + 3] = value.a;
-    }
-}
-
-// Hands what a step gave to the stages behind, for each of the results that it is.
-SHARED void texture_store(const Paths* paths, int i, int outputs, TextureValue value)
-{
-    for (int output = 0; output < SLOT_COUNT; ++output) {
-        if ((outputs >> output & 1) != 0) {
-            set_texture_result(paths, 4 * output, i, value.r);
-            set_texture_result(paths, 4 * output + 1, i, value.g);
-            set_texture_result(paths, 4 * output + 2, i, value.b);
-            set_texture_result(paths, 4 * output + 3, i, value.a);
-        }
     }
 }

@@ -68,8 +68,10 @@ SHARED TextureDifferentials texture_differentials(const Scene* scene, const Path
         shift_on_plane(origin, along, right, is_parallel, place.position, place.face_normal);
     const float3 dy =
         shift_on_plane(origin, along, down, is_parallel, place.position, place.face_normal);
-    const int is_of_camera = (get_depth(paths, i) == 0) &
-                             ((paths->lookup == LOOKUP_SURFACE) | (paths->lookup == LOOKUP_ALPHA));
+    const int lookup = LOOKUP_PLACE(paths->lookup);
+    const int is_of_camera =
+        (get_depth(paths, i) == 0) &
+        ((lookup == LOOKUP_SURFACE) | (lookup == LOOKUP_ALPHA) | (lookup == LOOKUP_AOV));
     const int is_known = is_of_camera & (depth > 0.0f);
     const float known = is_known ? 1.0f : 0.0f;
     TextureDifferentials change;

@@ -33,11 +33,16 @@ SHARED TextureRequests texture_requests(const Scene* scene, int program)
     return requests;
 }
 
-// The distance is an argument, or a constant beside the arguments: a word either way.
-SHARED TextureRequest texture_request(const Scene* scene, int first, int k)
+// The distance is an argument, or a constant beside the arguments: a word either way. Or it is what
+// another texture gave for path i.
+SHARED TextureRequest texture_request(const Scene* scene, const Paths* paths, int i, int first,
+                                      int k)
 {
     const int word = first + k * TEXTURE_REQUEST_WORDS;
-    const float asked = as_float(material_word(scene, (int)material_word(scene, word)));
+    const int at = (int)material_word(scene, word);
+    float asked = as_float(material_word(scene, at < 0 ? 0 : at));
+    if (uses(scene, EFFECT_OCCLUSION_DISTANCE) && at < 0)
+        asked = get_request_distance(paths, ~at, i);
     const float otherwise = as_float(material_word(scene, (int)material_word(scene, word + 3)));
     TextureRequest request;
     request.distance = asked > 0.0f ? asked : otherwise;
@@ -58,10 +63,9 @@ SHARED uint texture_ray_seed(const Scene* scene, const Paths* paths, int i, Text
     const SampleKey key = sample_key(scene->settings[0].seed, scene->settings[0].sequence_quanta,
                                      get_pixel(paths, i), get_sample(paths, i));
     const uint bits = (uint)(get_depth(paths, i) * 64 + request);
+    const int is_own = (paths->lookup == LOOKUP_SURFACE) | (paths->lookup == LOOKUP_AOV);
     const uint where =  // else a surface and what it is lit by would be seen through the same rays
-        paths->lookup == LOOKUP_SURFACE
-            ? 0u
-            : hash_pair((uint)paths->lookup, (uint)(place.triangle ^ place.instance << 16));
+        is_own ? 0u : hash_pair((uint)paths->lookup, (uint)(place.triangle ^ place.instance << 16));
     return hash_pair(hash_pair(key.seed, key.index), bits ^ where ^ 0x2545f491u);
 }
 

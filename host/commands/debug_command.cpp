@@ -45,7 +45,7 @@ std::string materials_of(const SceneData& scene, const std::string& node)
 {
     std::set<std::string> names;
     for (const TextureAttachment& attachment : scene.textures.attachments)
-        if (attachment.node == node)
+        if (attachment.node == node && attachment.material >= 0)
             names.insert(scene.material_names.at(size_t(attachment.material)));
     return fmt::format("{}", fmt::join(names, ", "));
 }

@@ -273,6 +273,11 @@ std::string reason_for(const SceneData& scene, unsigned effect)
     case EFFECT_PROCEDURAL_ALPHA:
         return materials_with(
             scene, [](const Material& m) { return m.texture_program[PROGRAM_ALPHA] != 0; });
+    case EFFECT_TEXTURE_AOV:
+        return counted(scene.textures.aovs.size(), "layer") + " of the picture";
+    case EFFECT_OCCLUSION_DISTANCE:
+        return materials_with(
+            scene, [](const Material& m) { return m.texture_program[PROGRAM_DISTANCE] != 0; });
     case EFFECT_ALPHA:
         return materials_with(scene,
                               [](const Material& m) { return m.alpha_mode != ALPHA_OPAQUE; });

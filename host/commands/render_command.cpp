@@ -34,9 +34,10 @@ void print_pixel(const Film& film, const Pixel& pixel)
 }
 
 // Before anything is allocated.
-void check_film_fits(const Settings& settings, const RenderOptions& options)
+void check_film_fits(const SceneData& scene, const RenderOptions& options)
 {
-    const size_t needed = film_bytes(settings, options);
+    const Settings& settings = scene.settings[0];
+    const size_t needed = film_bytes(scene, options);
     const size_t there = size_t(sysconf(_SC_PHYS_PAGES)) * size_t(sysconf(_SC_PAGE_SIZE));
     if (needed > there)
         throw std::runtime_error(fmt::format(
@@ -153,6 +154,12 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
     render->add_option("--capture", command.capture,
                        "Keep the pixel's hits on procedural textures, with what the device made of "
                        "them, for diptych debug --replay");
+    render
+        ->add_option(
+            "--aov", command.scene.load.aovs,
+            "Also write what this texture node gives where the camera sees a surface, raw, "
+            "as layer aov.NODE of the .exr. May be given more than once")
+        ->allow_extra_args(false);
     add_checkpoint_flags(*render, command.checkpoint);
     render->add_flag(
         "--strict", command.is_strict,
@@ -205,7 +212,7 @@ int run_render_command(const RenderCommand& command)
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
     SceneData scene = load_from_flags(run.scene, is_adaptive(options));
-    check_film_fits(scene.settings[0], options);
+    check_film_fits(scene, options);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
     std::optional<RenderState> start =
         checkpoint.begin(scene, options, run.device.backend, *backend, run.is_quiet);

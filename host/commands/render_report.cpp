@@ -74,7 +74,7 @@ void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan
                "memory: scene {}, structure about {}, paths {} ({} at once), film {} on the host\n",
                megabytes(plan.scene_bytes), megabytes(plan.structure_bytes),
                megabytes(plan.path_bytes), plan.items * QUANTUM << (2 * BLOCK_SHIFT),
-               megabytes(film_bytes(settings, options)));
+               megabytes(film_bytes(scene, options)));
 }
 
 ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -177,7 +177,8 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
           {"structure", result.plan.structure_bytes},
           {"paths", result.plan.path_bytes},
           {"allocated", statistics.allocated_bytes},
-          {"film", Film::bytes(result.film.data().window, result.film.data().batches)}}},
+          {"film", Film::bytes(result.film.data().window, result.film.data().batches,
+                               result.film.data().aovs.size())}}},
         {"dispatch_paths", result.plan.items * QUANTUM << (2 * BLOCK_SHIFT)},
         {"effects", effect_names(scene.effects)},
         {"degenerate_triangles", scene.degenerate_triangles},

@@ -227,9 +227,10 @@ SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
                fmt::format("out of range; give 1 to {}", most_samples));
     const int bounces = parse_bounces(flags.bounces);
     const int filter = parse_filter(flags.filter);
-    if (flags.scene.empty() &&
-        !(load.textures.empty() && load.texture_values.empty() && load.solo.empty()))
-        throw std::runtime_error("--texture, --set, --solo: only for a scene's file; name one");
+    if (flags.scene.empty() && !(load.textures.empty() && load.texture_values.empty() &&
+                                 load.solo.empty() && load.aovs.empty()))
+        throw std::runtime_error(
+            "--texture, --set, --solo, --aov: only for a scene's file; name one");
     SceneData scene = flags.scene.empty() ? demo_scene(load) : load_scene(flags.scene, load);
     if (!load.solo.empty()) leave_solo(scene);
     Settings& settings = scene.settings.at(0);

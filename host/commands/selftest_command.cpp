@@ -129,7 +129,7 @@ SelftestResult run_selftest(Backend& device, Backend& twin, const Allowance& all
     }
     for (int s = 0; s < STAGE_COUNT; ++s) {
         if (s == STAGE_compact) continue;  // seen in what accumulate makes of the paths
-        if ((needs_of[s] & RECORD_EFFECTS) != 0) continue;  // compared by their own tests
+        if ((needs_of[s] & (RECORD_EFFECTS | ASIDE_EFFECTS)) != 0) continue;  // by their own tests
         const StageTally& tally = tallies[size_t(s)];
         const bool is_of_textures = s == STAGE_trace_texture_rays || s == STAGE_evaluate_textures;
         if (is_of_textures && tally.paths == 0) continue;  // twin has no compiler here

@@ -80,6 +80,7 @@ json json_of(const TextureCapture& capture)
             {"textures", load.textures},
             {"values", load.texture_values},
             {"solo", load.solo},
+            {"aovs", load.aovs},
             {"allow_outside", load.allow_outside},
             {"scene_sha256", capture.scene_sha256},
             {"backend", capture.backend},
@@ -104,6 +105,7 @@ TextureCapture capture_of(const json& file)
     capture.scene.load.textures = file.at("textures").get<std::vector<std::string>>();
     capture.scene.load.texture_values = file.at("values").get<std::vector<std::string>>();
     capture.scene.load.solo = file.at("solo").get<std::string>();
+    capture.scene.load.aovs = file.value("aovs", std::vector<std::string>());
     capture.scene.load.allow_outside = file.at("allow_outside").get<bool>();
     capture.scene_sha256 = file.at("scene_sha256").get<std::string>();
     capture.backend = file.at("backend").get<std::string>();
@@ -176,6 +178,7 @@ TextureCapture capture_textures(Backend& backend, const SceneData& scene, const 
     capture.scene.load.textures = flags.load.textures;
     capture.scene.load.texture_values = flags.load.texture_values;
     capture.scene.load.solo = flags.load.solo;
+    capture.scene.load.aovs = flags.load.aovs;
     capture.scene.load.allow_outside = flags.load.allow_outside;
     capture.scene_sha256 = textures_hash(scene);
     capture.backend = name;
@@ -248,6 +251,7 @@ SceneData load_for_replay(const TextureCapture& capture, SceneFlags flags, const
     if (load.textures.empty()) load.textures = capture.scene.load.textures;
     if (load.texture_values.empty()) load.texture_values = capture.scene.load.texture_values;
     if (load.solo.empty()) load.solo = capture.scene.load.solo;
+    load.aovs = capture.scene.load.aovs;
     load.allow_outside = load.allow_outside || capture.scene.load.allow_outside;
     SceneData scene = load_from_flags(flags);
     if (textures_hash(scene) != capture.scene_sha256)

@@ -48,7 +48,8 @@ TextureFaultPlace place_of(const SceneData& scene, const TextureHit& hit,
     return place;
 }
 
-// The first step with the fault by sample, bounce and order of the steps.
+// The first step with the fault by sample, bounce and order of the steps; those for layers of the
+// picture come after the surface's.
 std::optional<TextureFaultPlace> find_first(Backend& backend, SceneData& scene,
                                             TextureReplay& replay, const TextureFault& fault,
                                             int kind)
@@ -57,15 +58,18 @@ std::optional<TextureFaultPlace> find_first(Backend& backend, SceneData& scene,
     const WorkItem item{fault.x, fault.y, fault.first_sample, 0};
     backend.trace({{&item, 1}, fault.samples, 0}, [&](const StageState& state) {
         if (state.stage != STAGE_intersect) return;
-        for (const TexturedPath& path : textured_hits(scene, state)) {
-            const TextureHit& hit = path.hit;
-            if (first && std::tie(first->sample, first->bounce) <= std::tie(hit.sample, hit.depth))
-                continue;
-            const std::vector<TextureStepValue> steps = replay.run(hit);
-            const auto at = std::ranges::find_if(
-                steps, [&](const TextureStepValue& step) { return has_fault(step, kind); });
-            if (at != steps.end()) first = place_of(scene, hit, *at, kind);
-        }
+        for (const int lookup : {LOOKUP_SURFACE, LOOKUP_AOV})
+            for (const TexturedPath& path : textured_hits(scene, state, lookup)) {
+                const TextureHit& hit = path.hit;
+                if (lookup == LOOKUP_AOV && hit.depth > 0) continue;
+                if (first &&
+                    std::tie(first->sample, first->bounce) <= std::tie(hit.sample, hit.depth))
+                    continue;
+                const std::vector<TextureStepValue> steps = replay.run(hit, lookup);
+                const auto at = std::ranges::find_if(
+                    steps, [&](const TextureStepValue& step) { return has_fault(step, kind); });
+                if (at != steps.end()) first = place_of(scene, hit, *at, kind);
+            }
     });
     return first;
 }

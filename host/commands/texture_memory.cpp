@@ -72,7 +72,7 @@ public:
 
     std::string material_name(int material) const
     {
-        return scene_.material_names.at(size_t(material));
+        return material < 0 ? "all" : scene_.material_names.at(size_t(material));
     }
 
 private:
@@ -170,14 +170,16 @@ json texture_memory(const SceneData& scene)
     std::vector<json> of_material(size_t(count), json::array());
     for (const TextureAttachment& attachment : scene.textures.attachments) {
         regions.push_back(memory.region(attachment));
-        of_material.at(size_t(attachment.material)).push_back(attachment.first_word);
+        if (attachment.material >= 0)
+            of_material.at(size_t(attachment.material)).push_back(attachment.first_word);
     }
     for (int m = 0; m < count; ++m) {
         json entry = {
             {"page", m}, {"name", memory.material_name(m)}, {"regions", of_material[size_t(m)]}};
         const int* own = scene.materials[size_t(m)].texture_program;
         if (const int program = own[PROGRAM_SURFACE]) entry["program_page"] = program / page_words;
-        for (const int which : {PROGRAM_SURFACE, PROGRAM_ALPHA, PROGRAM_EMISSION}) {
+        for (const int which :
+             {PROGRAM_SURFACE, PROGRAM_ALPHA, PROGRAM_EMISSION, PROGRAM_DISTANCE}) {
             const bool is_shared = which != PROGRAM_SURFACE && own[which] == own[PROGRAM_SURFACE];
             if (own[which] != 0 && !is_shared) programs.push_back(memory.program(m, own[which]));
         }

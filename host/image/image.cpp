@@ -40,6 +40,15 @@ Layer id_layer(std::string name, std::vector<uint32_t> ids)
     return {std::move(name), {""}, {}, std::move(ids)};
 }
 
+Layer node_layer(const std::string& node, int channels, std::vector<float> values)
+{
+    std::vector<std::string> names = {"R", "G", "B", "A"};
+    names.resize(size_t(channels));
+    return {"aov." + node, std::move(names), std::move(values), {}};
+}
+
+bool is_node_layer(const Layer& layer) { return layer.name.starts_with("aov."); }
+
 const Layer* find_layer(const Picture& picture, const std::string& name)
 {
     for (const Layer& layer : picture.layers)

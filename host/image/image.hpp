@@ -46,6 +46,9 @@ Layer depth_layer(
 Layer standard_error_layer(std::vector<float> rgb);   // standard_error.R,G,B: of the beauty's mean
 Layer predicted_error_layer(std::vector<float> jnd);  // predicted_error: visible error, see manual
 Layer id_layer(std::string name, std::vector<uint32_t>);  // object_id, material_id, sample_count
+// aov.NODE.R, G, B, A, or the first of these: raw numbers of a texture node, never stored as half.
+Layer node_layer(const std::string& node, int channels, std::vector<float> values);
+bool is_node_layer(const Layer& layer);
 
 // The layer of that name, or null.
 const Layer* find_layer(const Picture& picture, const std::string& name);
@@ -55,7 +58,7 @@ const Layer& beauty_of(const Picture& picture);  // throws when there is none
 enum class View { Standard, Neutral, Filmic };
 
 struct WriteOptions {
-    bool half = false;         // EXR: colours and normals as half; depth stays float, ids stay uint
+    bool half = false;  // EXR: colours and normals as half; depth and nodes stay float, ids uint
     bool sixteen_bit = false;  // PNG and TIFF
     bool alpha = false;  // PNG and TIFF: with the alpha channel, unassociated; otherwise opaque, as
                          // the beauty is

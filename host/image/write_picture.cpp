@@ -130,11 +130,12 @@ void check_layers(const std::string& path, const Picture& picture)
     }
 }
 
-// Depth keeps its range and ids their exact value, whatever the colours are stored as.
+// Depth and nodes keep their range and ids their exact value, whatever the colours are stored as.
 TypeDesc channel_type(const Layer& layer, const WriteOptions& options)
 {
     if (!layer.ids.empty()) return TypeDesc::UINT;
-    return options.half && layer.name != "depth" ? TypeDesc::HALF : TypeDesc::FLOAT;
+    const bool is_raw = layer.name == "depth" || is_node_layer(layer);
+    return options.half && !is_raw ? TypeDesc::HALF : TypeDesc::FLOAT;
 }
 
 OIIO::ImageSpec exr_spec(const Picture& picture, const WriteOptions& options)

@@ -34,7 +34,7 @@ template<class Data, class Function>
 void for_each_array(Data& data, Function&& function)
 {
     auto& [window, batches, radiance, batch_samples, alpha, albedo, normal, distance, object,
-           material, faults, texture_faults] = data;
+           material, faults, texture_faults, aovs, aov_values] = data;
     function("radiance", radiance);
     function("batch_samples", batch_samples);
     function("alpha", alpha);
@@ -43,6 +43,7 @@ void for_each_array(Data& data, Function&& function)
     function("distance", distance);
     function("object", object);
     function("material", material);
+    if (!aovs.empty()) function("aovs", aov_values);
 }
 
 template<class Value>
@@ -106,6 +107,8 @@ std::string header_text(const CheckpointHead& head, const Film& film)
     for_each_array(data, [&](const char* name, const auto& array) {
         arrays.push_back({name, bytes_of(array)});
     });
+    json aovs = json::array();
+    for (const TextureAov& aov : data.aovs) aovs.push_back({aov.node, aov.channels});
     const Faults& faults = data.faults;
     json texture_faults = json::array();
     for (const TextureFault& fault : data.texture_faults.of_kind)
@@ -124,6 +127,7 @@ std::string header_text(const CheckpointHead& head, const Film& film)
         {"width", film.width()},
         {"height", film.height()},
         {"batches", data.batches},
+        {"aovs", aovs},
         {"faults", {faults.count, faults.x, faults.y, faults.first_sample}},
         {"texture_faults", texture_faults},
         {"done", fraction_done(head)},
@@ -153,12 +157,16 @@ Checkpoint checkpoint_from(const json& in, size_t left)
     const int width = in.at("width"), height = in.at("height"), batches = in.at("batches");
     expect(width > 0 && height > 0 && width < 1 << 16 && height < 1 << 16);
     expect(batches > 0 && batches <= batch_count);
-    expect(Film::bytes({0, 0, width, height}, batches) <= left);
+    for (const json& aov : in.value("aovs", json::array())) {
+        head.subject.aovs.push_back({aov.at(0), aov.at(1)});
+        expect(head.subject.aovs.back().channels >= 1 && head.subject.aovs.back().channels <= 4);
+    }
+    expect(Film::bytes({0, 0, width, height}, batches, head.subject.aovs.size()) <= left);
     for (const json& slice : in.at("slices")) {
         expect(slice.at("blocks").get<size_t>() <= left);
         head.slices.push_back(slice_from(slice));
     }
-    Film film(width, height, {0, 0, width, height}, batches);
+    Film film(width, height, {0, 0, width, height}, batches, head.subject.aovs);
     const json& faults = in.at("faults");
     film.data().faults = {faults.at(0), faults.at(1), faults.at(2), faults.at(3)};
     const json& texture_faults = in.at("texture_faults");

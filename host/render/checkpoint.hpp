@@ -21,6 +21,7 @@ struct CheckpointSubject {
     std::string program;     // name and version
     std::string scene;       // SHA-256 of its buffers and textures; not of what backends add
     Settings settings = {};  // samples: 0 unless a texture reads the number
+    std::vector<TextureAov> aovs = {};
 };
 
 // scene: before Backend::upload().

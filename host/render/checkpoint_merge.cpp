@@ -80,7 +80,7 @@ void add_film(Film& film, const Film& more)
     const Film wide = with_batches(more, batches);
     // The list of members is whole, or it does not compile.
     auto& [window, batch_number, radiance, batch_samples, alpha, albedo, normal, distance, object,
-           material, faults, texture_faults] = film.data();
+           material, faults, texture_faults, aovs, aov_values] = film.data();
     const FilmData& data = wide.data();
     add_to(radiance, data.radiance);
     add_to(batch_samples, data.batch_samples);
@@ -88,6 +88,7 @@ void add_film(Film& film, const Film& more)
     add_to(albedo, data.albedo);
     add_to(normal, data.normal);
     add_to(distance, data.distance);
+    add_to(aov_values, data.aov_values);  // of the same nodes: they are part of the subject
     for (size_t p = 0; p < object.size(); ++p) {
         object[p] = std::max(object[p], data.object[p]);  // -1 in all slices but the first
         material[p] = std::max(material[p], data.material[p]);

@@ -59,6 +59,13 @@ bool has_same_environment(const Settings& a, const Settings& b)
 
 const char* filter_name(int filter) { return filter == FILTER_BOX ? "box" : "blackman-harris"; }
 
+std::string aovs_text(const std::vector<TextureAov>& aovs)
+{
+    std::string text;
+    for (const TextureAov& aov : aovs) text += (text.empty() ? "" : " ") + aov.node;
+    return text.empty() ? "none" : text;
+}
+
 std::string bounces_text(int bounces)
 {
     return bounces == BOUNCES_UNLIMITED ? "none" : fmt::format("{}", bounces);
@@ -68,7 +75,7 @@ std::string bounces_text(int bounces)
 
 CheckpointSubject checkpoint_subject(const SceneData& scene, const std::string& program)
 {
-    CheckpointSubject subject{program, hash_of(scene), scene.settings.at(0)};
+    CheckpointSubject subject{program, hash_of(scene), scene.settings.at(0), scene.textures.aovs};
     if (!reads_sample_count(scene)) subject.settings.samples = 0;
     return subject;
 }
@@ -90,6 +97,7 @@ std::string difference_between(const CheckpointSubject& a, const CheckpointSubje
             fmt::format("{}", q.samples));
     compare("samples in a sequence", fmt::format("{}", QUANTUM << p.sequence_quanta),
             fmt::format("{}", QUANTUM << q.sequence_quanta));
+    compare("layers of texture nodes", aovs_text(a.aovs), aovs_text(b.aovs));
     if (p.width == q.width && p.height == q.height && !has_same_camera(p, q))
         found.push_back("camera");
     if (!has_same_environment(p, q)) found.push_back("environment's rotation or scale");

@@ -48,7 +48,7 @@ int sequence_quanta_of(int samples)
     return quanta;
 }
 
-Film::Film(int width, int height, const Window& window, int batches)
+Film::Film(int width, int height, const Window& window, int batches, std::vector<TextureAov> aovs)
     : width_(width), height_(height)
 {
     data_.window = window;
@@ -62,12 +62,14 @@ Film::Film(int width, int height, const Window& window, int batches)
     data_.distance.assign(pixels, 0.0);
     data_.object.assign(pixels, -1);
     data_.material.assign(pixels, -1);
+    data_.aov_values.assign(pixels * aovs.size() * 4, 0.0);
+    data_.aovs = std::move(aovs);
 }
 
-size_t Film::bytes(const Window& window, int batches)
+size_t Film::bytes(const Window& window, int batches, size_t aovs)
 {
     const size_t of_batch = 3 * sizeof(double) + sizeof(int);
-    const size_t of_pixel = 7 * sizeof(double) + sizeof(float) + 2 * sizeof(int);
+    const size_t of_pixel = (7 + 4 * aovs) * sizeof(double) + sizeof(float) + 2 * sizeof(int);
     return window.pixels() * (of_batch * size_t(batches) + of_pixel);
 }
 
@@ -113,6 +115,9 @@ bool Film::add_pixel(size_t p, const WorkItem& item, const Dispatch& dispatch,
     }
     data_.alpha[p] += results.sum_alpha[size_t(r)];
     data_.distance[p] += double(results.sum_distance[size_t(r)]);
+    const size_t aov_planes = 4 * data_.aovs.size();
+    for (size_t c = 0; c < aov_planes; ++c)
+        data_.aov_values[p * aov_planes + c] += double(results.sum_aov[c * n + size_t(r)]);
     if (item.first_sample == 0) {
         data_.object[p] = results.object_id[size_t(r)];
         data_.material[p] = results.material_id[size_t(r)];
@@ -166,7 +171,7 @@ std::array<float, 3> Film::albedo(int x, int y) const
 
 void Film::forget_samples()
 {
-    FilmData fresh = Film(width_, height_, data_.window, data_.batches).data_;
+    FilmData fresh = Film(width_, height_, data_.window, data_.batches, data_.aovs).data_;
     fresh.object = std::move(data_.object);
     fresh.material = std::move(data_.material);
     fresh.faults = data_.faults;
@@ -207,6 +212,17 @@ std::vector<float> Film::means(const std::vector<double>& sums, size_t channels)
             out[p * channels + c] = float(sums[p * channels + c] / samples);
     }
     return out;
+}
+
+// A layer of means of one node, in as many channels as it gives numbers.
+std::vector<float> Film::aov_means(size_t aov) const
+{
+    const size_t all = data_.aovs.size(), channels = size_t(data_.aovs[aov].channels);
+    std::vector<double> sums(data_.window.pixels() * channels);
+    for (size_t p = 0; p < data_.window.pixels(); ++p)
+        std::copy_n(data_.aov_values.begin() + std::ptrdiff_t((p * all + aov) * 4), channels,
+                    sums.begin() + std::ptrdiff_t(p * channels));
+    return means(sums, channels);
 }
 
 std::vector<float> Film::beauty() const
@@ -251,6 +267,9 @@ image::Picture Film::picture() const
     picture.layers.push_back(image::id_layer("sample_count", whole(std::move(counts))));
     if (has_standard_error())
         picture.layers.push_back(image::standard_error_layer(whole(std::move(errors))));
+    for (size_t k = 0; k < data_.aovs.size(); ++k)
+        picture.layers.push_back(
+            image::node_layer(data_.aovs[k].node, data_.aovs[k].channels, whole(aov_means(k))));
     return picture;
 }
 

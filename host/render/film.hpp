@@ -45,6 +45,8 @@ struct FilmData {
     std::vector<int> object, material;  // met by the very first sample; -1: nothing, not rendered
     Faults faults;
     TextureFaults texture_faults;
+    std::vector<TextureAov> aovs;
+    std::vector<double> aov_values;  // [pixel][aov][4], summed
 };
 
 // How many batches the samples 0 to end - 1 fall into.
@@ -57,9 +59,11 @@ int sequence_quanta_of(int samples);
 class Film {
 public:
     // Keeps only what lies in the window. batches: batches_of the last sample's number plus one.
-    Film(int width, int height, const Window& window, int batches);
+    // aovs: texture nodes that have a layer each.
+    Film(int width, int height, const Window& window, int batches,
+         std::vector<TextureAov> aovs = {});
 
-    static size_t bytes(const Window& window, int batches);
+    static size_t bytes(const Window& window, int batches, size_t aovs = 0);
 
     void add(const Dispatch& dispatch, const Results& results);
 
@@ -83,8 +87,8 @@ public:
     // Starts the sums anew; what the first samples met is kept.
     void forget_samples();
 
-    // Beauty (alpha = coverage), albedo, normal, depth, object and material id, sample count and,
-    // with batches, standard error. Pixels without samples are black.
+    // Beauty (alpha = coverage), albedo, normal, depth, object and material id, sample count, with
+    // batches standard error, and the texture nodes. Pixels without samples are black.
     image::Picture picture() const;
     bool has_standard_error() const { return data_.batches == batch_count; }
 
@@ -97,6 +101,7 @@ private:
     std::array<float, 3> mean_of(size_t pixel) const;
     std::array<float, 3> standard_error_of(size_t pixel) const;
     std::vector<float> means(const std::vector<double>& sums, size_t channels) const;
+    std::vector<float> aov_means(size_t aov) const;
 
     int width_;
     int height_;

@@ -337,23 +337,25 @@ BlockGrid error_grid(const Settings& settings)
     return grid_of(settings, adaptive);
 }
 
-size_t film_bytes(const Settings& settings, const RenderOptions& options)
+size_t film_bytes(const SceneData& scene, const RenderOptions& options)
 {
-    return Film::bytes(window_of(settings, options), film_batches(options));
+    return Film::bytes(window_of(scene.settings.at(0), options), film_batches(options),
+                       scene.textures.aovs.size());
 }
 
-RenderState fresh_state(const Settings& settings, const RenderOptions& options)
+RenderState fresh_state(const SceneData& scene, const RenderOptions& options)
 {
+    const Settings& settings = scene.settings.at(0);
     const size_t blocks = grid_of(settings, options).corners.size();
-    return {
-        Film(settings.width, settings.height, window_of(settings, options), film_batches(options)),
-        {0, 0, 0, std::vector<BlockState>(blocks)}};
+    return {Film(settings.width, settings.height, window_of(settings, options),
+                 film_batches(options), scene.textures.aovs),
+            {0, 0, 0, std::vector<BlockState>(blocks)}};
 }
 
 RenderResult render(Backend& backend, const SceneData& scene, const RenderOptions& options,
                     std::optional<RenderState> resume)
 {
-    RenderState state = resume ? std::move(*resume) : fresh_state(scene.settings.at(0), options);
+    RenderState state = resume ? std::move(*resume) : fresh_state(scene, options);
     return Render(backend, scene, options, std::move(state)).run();
 }
 

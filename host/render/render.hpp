@@ -74,10 +74,10 @@ BlockGrid grid_of(const Settings& settings, const RenderOptions& options);
 BlockGrid error_grid(const Settings& settings);
 
 // What the film will take on the host.
-size_t film_bytes(const Settings& settings, const RenderOptions& options);
+size_t film_bytes(const SceneData& scene, const RenderOptions& options);
 
 // The state in which a render with these options begins: nothing rendered.
-RenderState fresh_state(const Settings& settings, const RenderOptions& options);
+RenderState fresh_state(const SceneData& scene, const RenderOptions& options);
 
 // Samples in quanta of 1, 2, 4, 8 or 16 a pixel, block by block. The picture depends neither on the
 // dispatch size nor on threads nor on where a render was interrupted and resumed. scene: uploaded

@@ -3,6 +3,7 @@
 
 #include "backends/textures/texture_tool.hpp"
 #include "host/scene/texture_arguments.hpp"
+#include "host/scene/texture_graph.hpp"
 #include "host/scene/texture_solo.hpp"
 #include "host/scene/uri.hpp"
 
@@ -359,6 +360,8 @@ void GltfLoader::add_textures()
         texture_nodes_.push_back(std::move(node));
     }
     if (!options_.solo.empty()) show_only(options_.solo, texture_nodes_, materials_);
+    for (const std::string& name : options_.aovs)
+        scene_.add_aov(texture_node_named(name, texture_nodes_, "--aov"));
 }
 
 }  // namespace diptych

@@ -56,6 +56,7 @@ private:
     class TexturePages;
     void survey_textures();
     void assemble_textures();
+    void assemble_aovs(TexturePages& pages);
 
     // emitter_power.cpp
     void estimate_emitters();

@@ -2,6 +2,7 @@
 
 #include "host/scene/scene_assembly.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <limits>
 
@@ -39,6 +40,11 @@ int SceneBuilder::add_texture_node(TextureNode node)
 {
     texture_nodes_.push_back(std::move(node));
     return int(texture_nodes_.size()) - 1;
+}
+
+void SceneBuilder::add_aov(int node)
+{
+    if (std::ranges::find(aovs_, node) == aovs_.end()) aovs_.push_back(node);
 }
 
 void SceneBuilder::set_textures(const TextureSettings& settings) { texture_settings_ = settings; }

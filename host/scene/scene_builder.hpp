@@ -118,6 +118,8 @@ public:
     int add_texture_function(TextureFunction function);
     int add_texture_node(TextureNode node);
     void set_textures(const TextureSettings& settings);
+    // Shows what the node gives, where a path first meets a surface, as a layer of the picture.
+    void add_aov(int node);
     int add_mesh(std::vector<MeshPart> parts, const std::string& name = "");
     int add_mesh(MeshPart part, const std::string& name = "");
 
@@ -177,6 +179,7 @@ private:
     std::vector<TextureFunction> texture_functions_;
     std::vector<TextureNode> texture_nodes_;
     TextureSettings texture_settings_;
+    std::vector<int> aovs_;  // nodes
     std::vector<Mesh> meshes_;
     std::vector<Placement> placements_;
     std::vector<PunctualLight> lights_;

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <limits>
+#include <optional>
 
 namespace diptych {
 namespace {
@@ -92,6 +93,7 @@ void SceneAssembly::survey_textures()
             if (is_used(int(m)) && use->node >= 0) roots.push_back(use->node);
         }
     }
+    roots.insert(roots.end(), builder_.aovs_.begin(), builder_.aovs_.end());
     node_used_.assign(nodes.size(), 0);
     for (const GraphStep& step : texture_order(nodes, roots).steps) {
         node_used_[size_t(step.node)] = 1;
@@ -103,11 +105,25 @@ void SceneAssembly::survey_textures()
 
 namespace {
 
+// What a program's steps are for beside each other: nodes by the place that their result has there.
+struct Purpose {
+    std::map<int, int> outputs{};  // masks over the results that other stages read
+    std::vector<int> aovs{};       // layers of the picture
+    std::vector<int> distances{};  // of occlusion
+};
+
+// Of a list, from 1 on; 0: not in it.
+int number_in(const std::vector<int>& nodes, int node)
+{
+    const auto at = std::ranges::find(nodes, node);
+    return at == nodes.end() ? 0 : int(at - nodes.begin()) + 1;
+}
+
 // The program of one material while it is put together.
 struct MaterialProgram {
     struct Request {
         const OcclusionRequest* asked;
-        int distance_word;  // -1: the request's own constant
+        std::optional<int> distance_word{};  // none: the request's own constant
     };
     std::vector<std::array<int, TEXTURE_STEP_WORDS>> steps;  // as they are stored
     std::vector<Request> requests;
@@ -143,34 +159,34 @@ public:
         return first;
     }
 
-    // The program `which` (PROGRAM_*) of a material. `roots`: the nodes that it is for; `outputs`:
-    // of a node, a mask over the results that other stages read.
-    void add_material(size_t m, int which, const std::vector<int>& roots,
-                      const std::map<int, int>& outputs)
+    // A program of material `m` (-1: of all), for the nodes `roots`. Returns its place. Nodes that
+    // give its requests their distances are added to `distances`.
+    int add(int m, const std::vector<int>& roots, const Purpose& purpose,
+            std::vector<int>& distances)
     {
         const GraphProgram order = texture_order(assembly_.builder_.texture_nodes_, roots);
         textures_.slots = std::max(textures_.slots, order.slots);
         MaterialProgram program;
-        for (const GraphStep& step : order.steps) {
-            const auto output = outputs.find(step.node);
-            add_step(m, step, output == outputs.end() ? 0 : output->second, program);
-        }
-        assembly_.data_.materials[m].texture_program[which] = add_program(program);
+        for (const GraphStep& step : order.steps) add_step(m, step, purpose, distances, program);
         textures_.occlusion_results =
             std::max(textures_.occlusion_results, int(program.requests.size()));
+        return add_program(program);
     }
 
-    // Where `which` wants no more and no less than the whole surface.
-    void share_program(size_t m, int which)
+    // The program that gives these distances; 0 where there are none.
+    int add_distances(int m, const std::vector<int>& distances)
     {
-        int* programs = assembly_.data_.materials[m].texture_program;
-        programs[which] = programs[PROGRAM_SURFACE];
+        if (distances.empty()) return 0;
+        textures_.distances = std::max(textures_.distances, int(distances.size()));
+        std::vector<int> none;  // add_requests refuses what would ask for more
+        return add(m, distances, {.distances = distances}, none);
     }
 
     void finish() { pages_.append_to(assembly_.data_.materials); }
 
 private:
-    void add_step(size_t m, const GraphStep& step, int outputs, MaterialProgram& program)
+    void add_step(int m, const GraphStep& step, const Purpose& purpose, std::vector<int>& distances,
+                  MaterialProgram& program)
     {
         const TextureNode& node = assembly_.builder_.texture_nodes_[size_t(step.node)];
         const TextureFunction& function =
@@ -179,14 +195,18 @@ private:
         const int region = pages_.begin();
         const std::vector<int> value_words = add_region(region, node, function, program);
         const int first_request = int(program.requests.size());
-        add_requests(node, function, value_words, program);
-        program.steps.push_back({node.function, region, step.slot, outputs, first_request});
+        add_requests(node, function, value_words, distances, program);
+        const auto output = purpose.outputs.find(step.node);
+        const int outputs = output == purpose.outputs.end() ? 0 : output->second;
+        const int aov = number_in(purpose.aovs, step.node);
+        const int distance = number_in(purpose.distances, step.node);
+        program.steps.push_back(
+            {node.function, region, step.slot, outputs, first_request, aov, distance});
         program.group.insert(program.group.end(),
-                             {node.function, step.slot, first_request, outputs});
+                             {node.function, step.slot, first_request, outputs, aov, distance});
         const int words =
             (pages_.end() - region + int(page_words) - 1) / int(page_words) * int(page_words);
-        textures_.attachments.push_back(
-            {node.name, int(m), node.function, region, words, step.node});
+        textures_.attachments.push_back({node.name, m, node.function, region, words, step.node});
     }
 
     // Where the value of each argument lies, by its position; -1: in the stack.
@@ -220,22 +240,41 @@ private:
     }
 
     void add_requests(const TextureNode& node, const TextureFunction& function,
-                      const std::vector<int>& value_words, MaterialProgram& program) const
+                      const std::vector<int>& value_words, std::vector<int>& distances,
+                      MaterialProgram& program) const
     {
         for (const OcclusionRequest& request : function.occlusion) {
             if (request.distance_argument < 0) {
-                program.requests.push_back({&request, -1});
+                program.requests.push_back({&request});
                 continue;
             }
             const size_t k = size_t(request.distance_argument);
-            const std::string& name = function.arguments[k].name;
-            if (value_words[k] < 0) {
-                const int from = node.arguments.at(name).node;
-                fail(node, fmt::format("the distance of its occlusion, {}, comes from node {}; "
-                                       "give it a number",
-                                       name, assembly_.builder_.texture_nodes_[size_t(from)].name));
+            if (value_words[k] >= 0) {
+                program.requests.push_back({&request, value_words[k]});
+                continue;
             }
-            program.requests.push_back({&request, value_words[k]});
+            const std::string& name = function.arguments[k].name;
+            const int from = node.arguments.at(name).node;
+            expect_no_occlusion(node, name, from);
+            if (number_in(distances, from) == 0) distances.push_back(from);
+            program.requests.push_back({&request, -number_in(distances, from)});  // ~ of it from 0
+        }
+    }
+
+    // Of what gives the distance that argument `name` of the node is: it runs before any occlusion.
+    void expect_no_occlusion(const TextureNode& node, const std::string& name, int from) const
+    {
+        const auto& nodes = assembly_.builder_.texture_nodes_;
+        for (const GraphStep& step : texture_order(nodes, {from}).steps) {
+            const TextureNode& other = nodes[size_t(step.node)];
+            if (assembly_.builder_.texture_functions_[size_t(other.function)].occlusion.empty())
+                continue;
+            const std::string way =
+                step.node == from ? ""
+                                  : fmt::format("{}, which reads node ", nodes[size_t(from)].name);
+            fail(node, fmt::format("the distance of its occlusion, {}, comes from node {}{}, which "
+                                   "asks for occlusion itself; let it come from nodes that do not",
+                                   name, way, other.name));
         }
     }
 
@@ -253,8 +292,7 @@ private:
         for (const auto& step : program.steps)
             for (const int word : step) pages_.add(word);
         for (size_t k = 0; k < program.requests.size(); ++k) {
-            const int own = program.requests[k].distance_word;
-            pages_.add(own >= 0 ? own : constants + 1 + int(k));
+            pages_.add(program.requests[k].distance_word.value_or(constants + 1 + int(k)));
             pages_.add(int(program.requests[k].asked->hemisphere));
             pages_.add(program.requests[k].asked->is_same_object ? 1 : 0);
             pages_.add(constants);
@@ -271,6 +309,27 @@ private:
     double default_distance_ = 0;
 };
 
+// The nodes that layers show are run on whatever a path has met first: one program for all
+// materials.
+void SceneAssembly::assemble_aovs(TexturePages& pages)
+{
+    std::vector<int> distances;
+    const int program = pages.add(-1, builder_.aovs_, {.aovs = builder_.aovs_}, distances);
+    const int before = pages.add_distances(-1, distances);
+    for (Material& material : data_.materials) {
+        material.texture_program[PROGRAM_AOV] = program;
+        material.texture_program[PROGRAM_AOV_DISTANCE] = before;
+    }
+    SceneTextures& textures = data_.textures;
+    for (const int node : builder_.aovs_) {
+        const TextureNode& shown = builder_.texture_nodes_[size_t(node)];
+        const TextureFunction& function = builder_.texture_functions_[size_t(shown.function)];
+        textures.aovs.push_back({shown.name, function.channels});
+    }
+    textures.outputs = std::max(textures.outputs, 1);  // what surfaces read in vain
+    data_.effects |= EFFECT_TEXTURE_AOV;
+}
+
 // Behind the materials: a program for each that reads nodes, a region for each node it uses.
 void SceneAssembly::assemble_textures()
 {
@@ -282,6 +341,7 @@ void SceneAssembly::assemble_textures()
     settings.occlusion_rays = std::clamp(builder_.texture_settings_.occlusion_rays, 1, 256);
     settings.time = float(builder_.texture_settings_.time);
     settings.object_frames = -1;
+    settings.aov_count = int(builder_.aovs_.size());
     textures.first_page = int(data_.materials.size());
     if (std::ranges::find(node_used_, 1) == node_used_.end()) return;
 
@@ -297,24 +357,24 @@ void SceneAssembly::assemble_textures()
         const int packed[SLOT_COUNT] = {material.base_slot,     material.metallic_roughness_slot,
                                         material.normal_slot,   material.emission_slot,
                                         material.specular_slot, material.specular_color_slot};
-        std::vector<int> roots;
-        std::map<int, int> outputs;
+        std::vector<int> roots, distances;
+        Purpose surface;
         const auto slots = slots_of(builder_.materials_[m]);
         for (size_t s = 0; s < SLOT_COUNT; ++s) {
             if (packed[s] != TEXTURE_PROCEDURAL) continue;
             int& output = settings.texture_output[s];
             if (output < 0) output = textures.outputs++;
             roots.push_back(slots[s]->node);
-            outputs[slots[s]->node] |= 1 << output;
+            surface.outputs[slots[s]->node] |= 1 << output;
         }
         if (roots.empty()) continue;
-        pages.add_material(m, PROGRAM_SURFACE, roots, outputs);
+        int* programs = data_.materials[m].texture_program;
+        programs[PROGRAM_SURFACE] = pages.add(int(m), roots, surface, distances);
         const auto look_up_alone = [&](int which, size_t slot, unsigned effect) {
             const int root = slots[slot]->node;
-            if (roots.size() > 1)
-                pages.add_material(m, which, {root}, {{root, 1 << settings.texture_output[slot]}});
-            else
-                pages.share_program(m, which);
+            const Purpose alone{.outputs = {{root, 1 << settings.texture_output[slot]}}};
+            programs[which] = roots.size() > 1 ? pages.add(int(m), {root}, alone, distances)
+                                               : programs[PROGRAM_SURFACE];
             textures.records = 1;
             data_.effects |= effect;
         };
@@ -322,8 +382,11 @@ void SceneAssembly::assemble_textures()
             look_up_alone(PROGRAM_EMISSION, SLOT_EMISSION, EFFECT_PROCEDURAL_EMISSION);
         if (packed[SLOT_BASE] == TEXTURE_PROCEDURAL && material.alpha_mode != ALPHA_OPAQUE)
             look_up_alone(PROGRAM_ALPHA, SLOT_BASE, EFFECT_PROCEDURAL_ALPHA);
+        programs[PROGRAM_DISTANCE] = pages.add_distances(int(m), distances);
     }
+    if (!builder_.aovs_.empty()) assemble_aovs(pages);
     pages.finish();
+    if (textures.distances > 0) data_.effects |= EFFECT_OCCLUSION_DISTANCE;
     data_.effects |= EFFECT_PROCEDURAL;
     if (textures.occlusion_results > 0) data_.effects |= EFFECT_TEXTURE_OCCLUSION;
     data_.effects &= ~builder_.disabled_effects_;

@@ -1,5 +1,7 @@
 #include "host/scene/texture_graph.hpp"
 
+#include "host/scene/uri.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <functional>
@@ -57,6 +59,18 @@ std::vector<int> texture_inputs(const TextureNode& node)
         }
     }
     return inputs;
+}
+
+int texture_node_named(const std::string& name, const std::vector<TextureNode>& nodes,
+                       const char* flag)
+{
+    const auto at = std::ranges::find(nodes, name, &TextureNode::name);
+    if (at != nodes.end()) return int(at - nodes.begin());
+    std::vector<std::string> names;
+    for (const TextureNode& node : nodes) names.push_back(printable(node.name));
+    if (names.size() > 8) names.resize(8);
+    throw SceneError(fmt::format("{} {}: no such texture node; there are {}: {}; name one of these",
+                                 flag, printable(name), nodes.size(), fmt::join(names, ", ")));
 }
 
 void check_texture_graph(const std::vector<TextureNode>& nodes)

@@ -21,6 +21,10 @@ struct GraphProgram {
 // The nodes whose results node `k` reads, in the order of its arguments' names, each once.
 std::vector<int> texture_inputs(const TextureNode& node);
 
+// The number of the node of that name. Throws SceneError that says which there are, for `flag`.
+int texture_node_named(const std::string& name, const std::vector<TextureNode>& nodes,
+                       const char* flag);
+
 // Throws SceneError naming the nodes of a cycle, or a reference to a node that is not there.
 void check_texture_graph(const std::vector<TextureNode>& nodes);
 

@@ -35,15 +35,7 @@ bool reads(const std::vector<TextureNode>& nodes, const MaterialInput& material,
 void show_only(const std::string& node, const std::vector<TextureNode>& nodes,
                std::vector<MaterialInput>& materials)
 {
-    const auto at = std::ranges::find(nodes, node, &TextureNode::name);
-    if (at == nodes.end()) {
-        std::vector<std::string> names;
-        for (const TextureNode& other : nodes) names.push_back(printable(other.name));
-        if (names.size() > 8) names.resize(8);
-        throw SceneError(fmt::format("--solo {}: no such texture node; there are {}: {}",
-                                     printable(node), nodes.size(), fmt::join(names, ", ")));
-    }
-    const int wanted = int(at - nodes.begin());
+    const int wanted = texture_node_named(node, nodes, "--solo");
     bool is_read = false;
     for (MaterialInput& material : materials) {
         MaterialInput shown;

@@ -118,9 +118,9 @@ TEST(Adaptive, APixelsFilmIsOnePixel)
     const SceneData scene = busy_scene(72, 40);
     RenderOptions options;
     options.pixel = Pixel{3, 4};
-    EXPECT_LT(film_bytes(scene.settings[0], options), 1000u);
+    EXPECT_LT(film_bytes(scene, options), 1000u);
     options.pixel.reset();
-    EXPECT_GT(film_bytes(scene.settings[0], options), size_t(72 * 40 * 100));
+    EXPECT_GT(film_bytes(scene, options), size_t(72 * 40 * 100));
 }
 
 }  // namespace

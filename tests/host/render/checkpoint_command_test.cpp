@@ -183,7 +183,8 @@ TEST_F(CheckpointCommand, MergeTellsWhatIsMissingAndRefusesWhatDoesNotFit)
 TEST_F(CheckpointCommand, RefusesToGoOnFromAnotherPicture)
 {
     ASSERT_EQ(
-        render({"--samples", "144", "--checkpoint", file_, "--quiet", "-o", picture_}).exit_code, 0);
+        render({"--samples", "144", "--checkpoint", file_, "--quiet", "-o", picture_}).exit_code,
+        0);
     const std::string before = bytes_of_file(file_);
     const auto refuse = [&](std::vector<std::string> more, const std::string& what) {
         more.insert(more.begin(), kept_.begin(), kept_.end());
