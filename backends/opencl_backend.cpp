@@ -169,13 +169,7 @@ void OpenclBackend::begin(const Dispatch& dispatch, int capacity, int next_entry
                                  std::to_string(memory_.results >> (2 * BLOCK_SHIFT)));
     queue_.write(memory_.items, dispatch.items.size_bytes(), dispatch.items.data());
     stages_.begin(dispatch, capacity, next_entry);
-    // written, not filled: Oclgrind does not notice that fills initialise
-    for (size_t r = 0; r < memory_.texture_result_rows.size(); ++r) {
-        const std::vector<int> plane(size_t(dispatch.results()), 0);
-        for (int c = 0; c < memory_.texture_result_rows[r].components; ++c)
-            queue_.write(memory_.texture_result_planes[r], plane.size() * sizeof plane[0],
-                         plane.data(), sizeof plane[0] * size_t(c) * size_t(memory_.results));
-    }
+    memory_.clear_texture_results(queue_);
 }
 
 bool OpenclBackend::goes_on(const Flight& flight, const Dispatch& dispatch) const

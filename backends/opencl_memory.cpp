@@ -226,6 +226,16 @@ size_t DispatchMemory::bytes() const
            sums.bytes() + total.bytes();
 }
 
+// Written, not filled, and whole: Oclgrind notices neither that fills initialise nor where in a
+// buffer a part is written.
+void DispatchMemory::clear_texture_results(opencl::Queue& queue) const
+{
+    for (const opencl::Buffer& buffer : texture_result_planes) {
+        const std::vector<char> nothing(buffer.bytes());
+        queue.write(buffer, nothing.size(), nothing.data());
+    }
+}
+
 void DispatchMemory::read_results(opencl::Queue& queue, Results& rows, int first, int count) const
 {
     const auto read = [&](auto& to, const PlaneRow& row, const opencl::Buffer& buffer) {

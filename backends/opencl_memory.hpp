@@ -53,6 +53,7 @@ struct DispatchMemory {
     opencl::Buffer total;
 
     size_t bytes() const;
+    void clear_texture_results(opencl::Queue& queue) const;
     // Result entries of all rows, whose planes lie as far apart as there is room for.
     void read_results(opencl::Queue& queue, Results& rows, int first, int count) const;
     void write_results(opencl::Queue& queue, const Results& rows, int count) const;

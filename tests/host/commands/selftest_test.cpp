@@ -25,7 +25,7 @@ TEST(Selftest, ScenesTogetherCallForEveryEffect)
 #define ADD_EFFECT(name, bit, words) all |= EFFECT_##name;
     EFFECTS_LIST(ADD_EFFECT)
 #undef ADD_EFFECT
-    EXPECT_EQ(effects, all & ~unsigned(RECORD_EFFECTS));
+    EXPECT_EQ(effects, all & ~unsigned(RECORD_EFFECTS | ASIDE_EFFECTS));
 }
 
 TEST(Selftest, PassesTheProcessorsBackends)
