@@ -236,43 +236,45 @@ void DispatchMemory::clear_texture_results(opencl::Queue& queue) const
     }
 }
 
+namespace {
+
+// use(values, row, buffer) for every row of results.
+template<class Rows, class Use>
+void for_result_rows(const DispatchMemory& memory, Rows& rows, const Use& use)
+{
+    size_t row = 0;
+#define USE_ROW(type, name) use(rows.name, result_rows()[row], memory.result_planes[row]), ++row;
+    RESULT_BUFFERS(USE_ROW)
+#undef USE_ROW
+    row = 0;
+#define USE_ROW(type, name) \
+    use(rows.name, memory.texture_result_rows[row], memory.texture_result_planes[row]), ++row;
+    TEXTURE_RESULT_BUFFERS(USE_ROW)
+#undef USE_ROW
+}
+
+}  // namespace
+
 void DispatchMemory::read_results(opencl::Queue& queue, Results& rows, int first, int count) const
 {
-    const auto read = [&](auto& to, const PlaneRow& row, const opencl::Buffer& buffer) {
+    for_result_rows(*this, rows, [&](auto& to, const PlaneRow& row, const opencl::Buffer& buffer) {
         to.resize(size_t(row.components) * size_t(count));
         const size_t element = sizeof to[0];
         for (size_t c = 0; c < size_t(row.components); ++c)
             queue.read(buffer, element * size_t(count), to.data() + c * size_t(count),
                        element * (c * size_t(results) + size_t(first)));
-    };
-    size_t row = 0;
-#define READ_RESULT(type, name) read(rows.name, result_rows()[row], result_planes[row]), ++row;
-    RESULT_BUFFERS(READ_RESULT)
-#undef READ_RESULT
-    row = 0;
-#define READ_RESULT(type, name) \
-    read(rows.name, texture_result_rows[row], texture_result_planes[row]), ++row;
-    TEXTURE_RESULT_BUFFERS(READ_RESULT)
-#undef READ_RESULT
+    });
 }
 
 void DispatchMemory::write_results(opencl::Queue& queue, const Results& rows, int count) const
 {
-    const auto write = [&](const auto& from, const PlaneRow& row, const opencl::Buffer& buffer) {
-        const size_t element = sizeof from[0];
-        for (size_t c = 0; c < size_t(row.components); ++c)
-            queue.write(buffer, element * size_t(count), from.data() + c * size_t(count),
-                        element * c * size_t(results));
-    };
-    size_t row = 0;
-#define WRITE_RESULT(type, name) write(rows.name, result_rows()[row], result_planes[row]), ++row;
-    RESULT_BUFFERS(WRITE_RESULT)
-#undef WRITE_RESULT
-    row = 0;
-#define WRITE_RESULT(type, name) \
-    write(rows.name, texture_result_rows[row], texture_result_planes[row]), ++row;
-    TEXTURE_RESULT_BUFFERS(WRITE_RESULT)
-#undef WRITE_RESULT
+    for_result_rows(
+        *this, rows, [&](const auto& from, const PlaneRow& row, const opencl::Buffer& buffer) {
+            const size_t element = sizeof from[0];
+            for (size_t c = 0; c < size_t(row.components); ++c)
+                queue.write(buffer, element * size_t(count), from.data() + c * size_t(count),
+                            element * c * size_t(results));
+        });
 }
 
 Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory_bytes)

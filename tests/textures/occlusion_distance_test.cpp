@@ -111,18 +111,27 @@ TEST_P(OcclusionDistances, AConstantNodeIsTheConstantBitForBit)
     EXPECT_NE(pictures[0], pictures[3]);
 }
 
+struct OpenByHalves {
+    int half;   // gives the distance
+    int shown;  // is open as far as it says
+};
+
+OpenByHalves open_by_halves(SceneBuilder& scene, double below, double above)
+{
+    const int asks = scene.add_texture_function(open_within("t0"));
+    const int gives = scene.add_texture_function(halves("t1"));
+    const int half = scene.add_texture_node(
+        {"half", gives, {{"below", numbers({below})}, {"above", numbers({above})}}});
+    return {half, scene.add_texture_node({"open", asks, {{"reach", {.node = half}}}})};
+}
+
 // Nothing is nearer than the wall; within any distance of the other half, all of it counts.
 TEST_P(OcclusionDistances, FollowTheNodeFromPlaceToPlace)
 {
     const double open = 1 - share_of_wall(0.2);
     for (const auto& [z, truth] : {std::pair{-0.012, 1.0}, std::pair{0.012, open}}) {
         SceneBuilder scene;
-        const int asks = scene.add_texture_function(open_within("t0"));
-        const int half =
-            scene.add_texture_node({"half",
-                                    scene.add_texture_function(halves("t1")),
-                                    {{"below", numbers({0.1})}, {"above", numbers({1e6})}}});
-        const int shown = scene.add_texture_node({"open", asks, {{"reach", {.node = half}}}});
+        const int shown = open_by_halves(scene, 0.1, 1e6).shown;
         EXPECT_TRUE(laws::obeys(measure(floor_and_wall(scene, shown, z)), truth)) << z;
     }
 }
@@ -131,12 +140,7 @@ TEST_P(OcclusionDistances, FollowTheNodeFromPlaceToPlace)
 TEST_P(OcclusionDistances, AreTheSameInALayer)
 {
     SceneBuilder scene;
-    const int asks = scene.add_texture_function(open_within("t0"));
-    const int half =
-        scene.add_texture_node({"half",
-                                scene.add_texture_function(halves("t1")),
-                                {{"below", numbers({0.1})}, {"above", numbers({1e6})}}});
-    const int shown = scene.add_texture_node({"open", asks, {{"reach", {.node = half}}}});
+    const auto [half, shown] = open_by_halves(scene, 0.1, 1e6);
     scene.add_aov(shown);
     scene.add_aov(half);
     SceneData data = floor_and_wall(scene, shown, 0);
@@ -169,12 +173,7 @@ TEST(OcclusionDistanceParity, OpenclHasTheTwinsBits)
             GTEST_SKIP() << error.what();
         }
         SceneBuilder scene;
-        const int asks = scene.add_texture_function(open_within("t0"));
-        const int half =
-            scene.add_texture_node({"half",
-                                    scene.add_texture_function(halves("t1")),
-                                    {{"below", numbers({0.3})}, {"above", numbers({1})}}});
-        const int shown = scene.add_texture_node({"open", asks, {{"reach", {.node = half}}}});
+        const int shown = open_by_halves(scene, 0.3, 1).shown;
         SceneData data = floor_and_wall(scene, shown, 0, 0.5f);
         backend->upload(data);
         RenderOptions options;

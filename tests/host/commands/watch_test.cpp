@@ -96,11 +96,13 @@ private:
 class WatchCommandLine : public testing::Test {
 protected:
     WatchCommandLine() { write_painted_scene(folder_); }
-    std::vector<std::string> words(const std::string& picture, const std::string& samples) const
+    std::vector<std::string> words(const std::string& picture, const std::string& samples,
+                                   const std::vector<std::string>& more = {}) const
     {
         std::vector<std::string> all = {folder_ / "scene.gltf", "--samples", samples, "-o",
                                         folder_ / picture};
         all.insert(all.end(), painted_view.begin(), painted_view.end());
+        all.insert(all.end(), more.begin(), more.end());
         return all;
     }
     std::vector<float> pixels(const std::string& picture) const
@@ -110,9 +112,8 @@ protected:
     std::vector<float> rendered(const std::vector<std::string>& more,
                                 const std::string& samples = "4") const
     {
-        std::vector<std::string> all = words("fresh.exr", samples);
+        std::vector<std::string> all = words("fresh.exr", samples, more);
         all.insert(all.begin(), "render");
-        all.insert(all.end(), more.begin(), more.end());
         const Outcome outcome = run_diptych(all, {.seconds = 200});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
         return pixels("fresh.exr");
@@ -158,9 +159,7 @@ TEST_F(WatchCommandLine, TheEndOfTheInputEndsNothingAndInterruptsWriteThePicture
 // The picture is that of a render with the same target, before and after an edit.
 TEST_F(WatchCommandLine, RendersUntilTheErrorIsSmallEnough)
 {
-    std::vector<std::string> flags = words("out.exr", "512");
-    flags.insert(flags.end(), {"--error", "2"});
-    Watch watch(folder_, flags);
+    Watch watch(folder_, words("out.exr", "512", {"--error", "2"}));
     ASSERT_TRUE(watch.says("asked for 2 JND, predicted"));
     ASSERT_TRUE(watch.says("complete, written"));
     watch.type("paint.scale=3\n");
@@ -173,9 +172,7 @@ TEST_F(WatchCommandLine, RendersUntilTheErrorIsSmallEnough)
 
 TEST_F(WatchCommandLine, EndsItsPicturesWhenTheTimeIsOver)
 {
-    std::vector<std::string> flags = words("out.exr", "1000000");
-    flags.insert(flags.end(), {"--time", "0.2s"});
-    Watch watch(folder_, flags);
+    Watch watch(folder_, words("out.exr", "1000000", {"--time", "0.2s"}));
     ASSERT_TRUE(watch.says("the time is over"));
     ASSERT_TRUE(watch.says("complete, written"));
     watch.type("paint.scale=3\n");
