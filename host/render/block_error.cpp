@@ -13,35 +13,34 @@ float luminance(const std::array<float, 3>& color)
     return 0.2126f * color[0] + 0.7152f * color[1] + 0.0722f * color[2];
 }
 
+// The 3 x 3 pixels about one, as far as they lie in the area.
 template<class Visit>
-void for_pixels_around(const Film& film, int x, int y, const Visit& visit)
+void for_pixels_around(const Window& area, int x, int y, const Visit& visit)
 {
-    const Window& window = film.data().window;
-    const int right = std::min(x + 1, window.x + window.width - 1);
-    const int low = std::min(y + 1, window.y + window.height - 1);
-    for (int v = std::max(y - 1, window.y); v <= low; ++v)
-        for (int u = std::max(x - 1, window.x); u <= right; ++u) visit(u, v);
+    const int right = std::min(x + 1, area.x + area.width - 1);
+    const int low = std::min(y + 1, area.y + area.height - 1);
+    for (int v = std::max(y - 1, area.y); v <= low; ++v)
+        for (int u = std::max(x - 1, area.x); u <= right; ++u) visit(u, v);
 }
 
-// Mean albedo of every pixel of the window, as luminance.
-std::vector<float> albedo_luminances(const Film& film)
+// Mean albedo of every pixel of the area, as luminance.
+std::vector<float> albedo_luminances(const Film& film, const Window& area)
 {
-    const Window& window = film.data().window;
-    std::vector<float> values(window.pixels());
-    for (int y = 0; y < window.height; ++y)
-        for (int x = 0; x < window.width; ++x)
-            values[size_t(y) * size_t(window.width) + size_t(x)] =
-                luminance(film.albedo(window.x + x, window.y + y));
+    std::vector<float> values;
+    values.reserve(area.pixels());
+    for (int y = 0; y < area.height; ++y)
+        for (int x = 0; x < area.width; ++x)
+            values.push_back(luminance(film.albedo(area.x + x, area.y + y)));
     return values;
 }
 
 // value(u, v): of the albedo's luminance at a pixel.
 template<class Value>
-float contrast_around(const Film& film, int x, int y, const Value& value)
+float contrast_around(const Window& area, int x, int y, const Value& value)
 {
     float sum = 0, square = 0;
     int count = 0;
-    for_pixels_around(film, x, y, [&](int u, int v) {
+    for_pixels_around(area, x, y, [&](int u, int v) {
         const float here = value(u, v);
         sum += here;
         square += here * here;
@@ -52,11 +51,12 @@ float contrast_around(const Film& film, int x, int y, const Value& value)
     return mean > 0 ? std::sqrt(variance) / mean : 0;
 }
 
-// Errors of many pixels: pixel_error with the albedos worked out once.
+// Errors of the pixels of an area of the film's window, by what lies in it: pixel_error with the
+// albedos worked out once.
 class PixelErrors {
 public:
-    PixelErrors(const Film& film, const Viewer& viewer)
-        : film_(film), viewer_(viewer), albedos_(albedo_luminances(film))
+    PixelErrors(const Film& film, const Viewer& viewer, const Window& area)
+        : film_(film), viewer_(viewer), area_(area), albedos_(albedo_luminances(film, area))
     {
     }
 
@@ -64,9 +64,8 @@ public:
     {
         const std::array<float, 3> error = film_.standard_error(x, y);
         if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
-        const Window& window = film_.data().window;
-        const float contrast = contrast_around(film_, x, y, [&](int u, int v) {
-            return albedos_[size_t(v - window.y) * size_t(window.width) + size_t(u - window.x)];
+        const float contrast = contrast_around(area_, x, y, [&](int u, int v) {
+            return albedos_[size_t(v - area_.y) * size_t(area_.width) + size_t(u - area_.x)];
         });
         return visible_error(film_.radiance(x, y), error, contrast, viewer_);
     }
@@ -74,6 +73,7 @@ public:
 private:
     const Film& film_;
     const Viewer& viewer_;
+    Window area_;
     std::vector<float> albedos_;
 };
 
@@ -88,13 +88,15 @@ double share_below(double bound, double deviation)
     return deviation > 0 ? std::erf(bound / (deviation * std::sqrt(2.0))) : 1;
 }
 
-// RMS of `confidence` standard errors over the block's pixels that the film holds.
-BlockError block_error(const Film& film, const PixelErrors& errors, Pixel corner, int shift)
+// RMS of `confidence` standard errors over the block's pixels. Nothing outside of it counts:
+// neighbours may be under way.
+BlockError block_error(const Film& film, const Viewer& viewer, Pixel corner, int shift)
 {
     const int parts = std::max(1, 1 << (shift - part_shift));
     const int part_side = (1 << shift) / parts;
     const int right = std::min(corner.x + (1 << shift), film.width());
     const int low = std::min(corner.y + (1 << shift), film.height());
+    const PixelErrors errors(film, viewer, {corner.x, corner.y, right - corner.x, low - corner.y});
     double all = 0, worst = 0;
     int pixels = 0;
     for (int top = corner.y; top < low; top += part_side)
@@ -117,7 +119,8 @@ BlockError block_error(const Film& film, const PixelErrors& errors, Pixel corner
 
 float texture_contrast(const Film& film, int x, int y)
 {
-    return contrast_around(film, x, y, [&](int u, int v) { return luminance(film.albedo(u, v)); });
+    return contrast_around(film.data().window, x, y,
+                           [&](int u, int v) { return luminance(film.albedo(u, v)); });
 }
 
 float pixel_error(const Film& film, int x, int y, const Viewer& viewer)
@@ -131,7 +134,7 @@ float pixel_bound(const Film& film, int x, int y, const Viewer& viewer)
 {
     float sum = 0;
     int count = 0;
-    for_pixels_around(film, x, y, [&](int u, int v) {
+    for_pixels_around(film.data().window, x, y, [&](int u, int v) {
         const float error = pixel_error(film, u, v, viewer);
         sum += error * error;
         ++count;
@@ -141,12 +144,18 @@ float pixel_bound(const Film& film, int x, int y, const Viewer& viewer)
 
 std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, const Viewer& viewer)
 {
-    const PixelErrors pixels(film, viewer);
     std::vector<BlockError> errors;
     errors.reserve(grid.corners.size());
     for (const Pixel& corner : grid.corners)
-        errors.push_back(block_error(film, pixels, corner, grid.shift));
+        errors.push_back(block_error(film, viewer, corner, grid.shift));
     return errors;
+}
+
+void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid, const Viewer& viewer)
+{
+    for (size_t b = size_t(schedule.turn); b < schedule.blocks.size(); b += size_t(schedule.teams))
+        if (!schedule.blocks[b].is_done)
+            schedule.blocks[b].error = block_error(film, viewer, grid.corners[b], grid.shift);
 }
 
 ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const Viewer& viewer,
@@ -172,8 +181,9 @@ ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const View
 
 std::vector<float> predicted_error(const Film& film, const Viewer& viewer)
 {
-    const PixelErrors errors(film, viewer);
     const int width = film.width(), height = film.height();
+    const Window whole{0, 0, width, height};
+    const PixelErrors errors(film, viewer, whole);
     std::vector<float> squares(size_t(width) * size_t(height)), out(squares.size());
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
@@ -184,7 +194,7 @@ std::vector<float> predicted_error(const Film& film, const Viewer& viewer)
         for (int x = 0; x < width; ++x) {
             float sum = 0;
             int count = 0;
-            for_pixels_around(film, x, y, [&](int u, int v) {
+            for_pixels_around(whole, x, y, [&](int u, int v) {
                 sum += squares[size_t(v) * size_t(width) + size_t(u)];
                 ++count;
             });

@@ -24,6 +24,10 @@ float pixel_bound(const Film& film, int x, int y, const Viewer& viewer);
 // Of each block: RMS of `confidence` standard errors over its pixels.
 std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, const Viewer& viewer);
 
+// The same, of the blocks that are not done of the team whose turn it is, into their states.
+void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid,
+                  const Viewer& viewer);
+
 // What the film's error is expected to be.
 struct ErrorSummary {
     double rms = 0;           // JND, one standard error

@@ -73,15 +73,11 @@ Settings settings_from(const std::string& text)
 json json_of(const Slice& slice)
 {
     const Schedule& schedule = slice.schedule;
-    return {{"first", slice.first},
-            {"end", slice.end},
-            {"error", slice.error},
-            {"timed", slice.is_timed},
-            {"unbiased", slice.is_unbiased},
-            {"round", schedule.round},
-            {"level", schedule.level},
-            {"pilot", schedule.pilot},
-            {"blocks", schedule.blocks.size()}};
+    return {{"first", slice.first},          {"end", slice.end},
+            {"error", slice.error},          {"timed", slice.is_timed},
+            {"unbiased", slice.is_unbiased}, {"round", schedule.round},
+            {"level", schedule.level},       {"pilot", schedule.pilot},
+            {"turn", schedule.turn},         {"blocks", schedule.blocks.size()}};
 }
 
 Slice slice_from(const json& in)
@@ -95,6 +91,7 @@ Slice slice_from(const json& in)
     slice.schedule.round = in.at("round");
     slice.schedule.level = in.at("level");
     slice.schedule.pilot = in.at("pilot");
+    slice.schedule.turn = in.at("turn");
     slice.schedule.blocks.resize(in.at("blocks").get<size_t>());
     return slice;
 }
@@ -185,7 +182,7 @@ Checkpoint checkpoint_from(const json& in, size_t left)
 
 // Blocks as the file holds them.
 struct StoredBlock {
-    std::int32_t quanta, target, is_done;
+    std::int32_t quanta, target, is_done, error, worst_part;
 };
 
 class Reader {
@@ -363,7 +360,8 @@ void write_checkpoint(SafeFile& file, const CheckpointHead& head, const Film& fi
     for (const Slice& slice : head.slices) {
         std::vector<StoredBlock> blocks;
         for (const BlockState& block : slice.schedule.blocks)
-            blocks.push_back({block.quanta, block.target, block.is_done});
+            blocks.push_back({block.quanta, block.target, block.is_done, block.error.rms,
+                              block.error.worst_part});
         writer.write(blocks.data(), blocks.size() * sizeof(StoredBlock));
     }
     writer.write_checksum();
@@ -387,6 +385,7 @@ Checkpoint read_checkpoint(const std::string& path)
             block.quanta = stored.quanta;
             block.target = stored.target;
             block.is_done = stored.is_done != 0;
+            block.error = {stored.error, stored.worst_part};
         }
     reader.expect_checksum("sums");
     return checkpoint;

@@ -14,7 +14,7 @@
 
 namespace diptych {
 
-inline constexpr unsigned checkpoint_version = 1;
+inline constexpr unsigned checkpoint_version = 2;
 
 // What two checkpoints must share to belong to one picture.
 struct CheckpointSubject {

@@ -48,17 +48,25 @@ public:
           quanta_(plan_of(options)), state_(std::move(state)), plan_(backend.plan(scene)),
           start_(Clock::now())
     {
-        for (const BlockState& block : state_.schedule.blocks) {
+        Schedule& schedule = state_.schedule;
+        for (const BlockState& block : schedule.blocks) {
             done_ += block.quanta;
-            has_picture_ = has_picture_ && block.quanta > 0;
+            blocks_without_ += block.quanta == 0;
         }
-        if (is_adaptive(options_)) measure();
+        schedule.teams = is_adaptive(options_) && !options_.is_unbiased ? 2 : 1;
+        schedule.turn %= schedule.teams;
+        if (!is_adaptive(options_)) work_ = work_by_pass(schedule);
+        for (int k = 0; k < schedule.teams && is_adaptive(options_); ++k)
+            append_round((schedule.turn + k) % schedule.teams);
     }
 
     RenderResult run()
     {
-        bool is_complete = false;
-        while (finish_round() && !is_complete) is_complete = !begin_round();
+        bool is_complete = !lengthen_list();
+        while (!is_complete && may_go_on()) {
+            run_next_dispatch();
+            is_complete = !lengthen_list();
+        }
         RenderResult result{std::move(state_.film), std::move(state_.schedule), plan_,
                             backend_.statistics(), seconds_since(start_)};
         result.scheduling_seconds = scheduling_seconds_;
@@ -68,11 +76,13 @@ public:
     }
 
 private:
+    bool has_picture() const { return blocks_without_ == 0; }  // every block has a quantum
+
     bool is_interrupted() const { return options_.stop && options_.stop->load(); }
 
     bool is_time_over() const
     {
-        return options_.time_limit > 0 && has_picture_ &&
+        return options_.time_limit > 0 && has_picture() &&
                (is_time_used_up_ || seconds_since(start_) >= options_.time_limit);
     }
 
@@ -129,69 +139,101 @@ private:
         return size_t(std::clamp(items, 4.0, double(planned)));
     }
 
-    void measure() { errors_ = block_errors(state_.film, grid_, options_.viewer); }
-
-    bool begin_round()
+    // Extends the list of work by every round that can be decided. False when nothing is left to
+    // do.
+    bool lengthen_list()
     {
-        if (!is_adaptive(options_))
-            return begin_uniform_round(state_.schedule, int(quanta_.size()));
+        if (!is_adaptive(options_)) {
+            if (next_ == work_.size() &&
+                begin_uniform_round(state_.schedule, int(quanta_.size()))) {
+                work_ = work_by_pass(state_.schedule);
+                next_ = 0;
+            }
+            return next_ < work_.size();
+        }
         const Clock::time_point start = Clock::now();
-        measure();
-        const bool has_begun = options_.error > 0 ? begin_adaptive() : begin_at_some_level();
+        const Schedule& schedule = state_.schedule;
+        int done = 0;  // teams in a row, that have nothing left to do
+        while (done < schedule.teams && is_round_done(schedule, schedule.turn)) {
+            const int team = schedule.turn;
+            done = begin_adaptive() ? 0 : done + 1;
+            if (done == 0) append_round(team);
+            if (done == schedule.teams && lower_target()) done = 0;
+        }
         scheduling_seconds_ += seconds_since(start);
-        return has_begun;
+        return done < schedule.teams;
     }
 
     bool begin_adaptive()
     {
+        measure_team(state_.schedule, state_.film, grid_, options_.viewer);
         const Targets targets{target(), 4 * QUANTUM, options_.is_unbiased};
         const int pilot = state_.schedule.pilot;
-        const bool has_begun =
-            begin_adaptive_round(state_.schedule, grid_, quanta_, errors_, targets);
+        const bool has_begun = begin_adaptive_round(state_.schedule, grid_, quanta_, targets);
         if (state_.schedule.pilot != pilot) state_.film.forget_samples();
         return has_begun;
     }
 
-    // A time limit alone: when all blocks are as good as each other, the target is lowered.
-    bool begin_at_some_level()
+    void append_round(int team)
     {
+        work_.erase(work_.begin(), work_.begin() + std::ptrdiff_t(next_));
+        next_ = 0;
+        const std::vector<Work> round = work_by_block(state_.schedule, quanta_, team);
+        work_.insert(work_.end(), round.begin(), round.end());
+    }
+
+    // A time limit alone: when all blocks are as good as each other, the target is lowered.
+    bool lower_target()
+    {
+        std::vector<BlockState>& blocks = state_.schedule.blocks;
         const auto has_plan_left = [&](const BlockState& block) {
             return block.quanta < int(quanta_.size());
         };
-        while (!begin_adaptive()) {
-            std::vector<BlockState>& blocks = state_.schedule.blocks;
-            if (target() == 1 || std::none_of(blocks.begin(), blocks.end(), has_plan_left))
-                return false;
-            ++state_.schedule.level;
-            for (BlockState& block : blocks) block.is_done = false;
-        }
+        if (options_.error > 0 || target() == 1 ||
+            std::none_of(blocks.begin(), blocks.end(), has_plan_left))
+            return false;
+        ++state_.schedule.level;
+        for (BlockState& block : blocks) block.is_done = false;
         return true;
     }
 
-    // False when asked to stop before its end.
-    bool finish_round()
+    // What is under way ends first, but for an end at once.
+    bool may_go_on() const
     {
-        const bool is_first = !has_picture_ || !is_adaptive(options_);
-        const std::vector<Work> work = is_first ? work_by_pass(state_.schedule)
-                                                : work_by_block(state_.schedule, quanta_, errors_);
-        items_under_way_ = 0;
-        for (size_t first = 0; first < work.size();) {
-            if (is_interrupted() && (items_under_way_ == 0 || options_.stops_at_once)) return false;
-            if (is_time_over() && items_under_way_ == 0) return false;
-            const int samples = quanta_[size_t(work[first].quantum)].samples;
-            const size_t most = std::max(items_at_once(samples), items_under_way_);
-            const size_t count = dispatch_length(work, first, most, quanta_);
-            const size_t all = dispatch_length(work, first, work.size(), quanta_);
-            first += run_dispatch({work.data() + first, count}, all - count);
+        if (is_interrupted() && options_.stops_at_once) return false;
+        return items_under_way_ > 0 || !(is_interrupted() || is_time_over());
+    }
+
+    // Whether work of as many samples will follow what is listed: the older round ends before the
+    // list does.
+    bool will_more_follow(int samples) const
+    {
+        const Schedule& schedule = state_.schedule;
+        bool will_more = false;
+        for (size_t b = size_t(schedule.turn); b < schedule.blocks.size() && schedule.teams > 1;
+             b += size_t(schedule.teams)) {
+            const BlockState& block = schedule.blocks[b];
+            will_more = will_more || (!block.is_done && block.target < int(quanta_.size()) &&
+                                      quanta_[size_t(block.target)].samples == samples);
         }
-        if (!work.empty()) has_picture_ = true;
-        return true;
+        return will_more;
+    }
+
+    void run_next_dispatch()
+    {
+        const int samples = quanta_[size_t(work_[next_].quantum)].samples;
+        const size_t most = std::max(items_at_once(samples), items_under_way_);
+        const size_t count = dispatch_length(work_, next_, most, quanta_);
+        const size_t all = dispatch_length(work_, next_, work_.size(), quanta_);
+        const bool is_last = all == work_.size() - next_;
+        const size_t following = all - count + (is_last && will_more_follow(samples) ? 1 : 0);
+        next_ += run_dispatch({work_.data() + next_, count}, following);
     }
 
     // The time that what is under way still takes is left to it.
     bool is_time_for_the_rest(int samples) const
     {
-        return options_.time_limit > 0 && has_picture_ &&
+        return options_.time_limit > 0 && has_picture() &&
                seconds_since(start_) + first_done_ * samples >= options_.time_limit;
     }
 
@@ -233,8 +275,11 @@ private:
         is_time_used_up_ = is_time_used_up_ || (wish == Wish::finish && !is_interrupted());
         dispatch.items = dispatch.items.first(done);
         state_.film.add(dispatch, results_);
-        for (const Work& part : work.first(done))
-            state_.schedule.blocks[size_t(part.block)].quanta = part.quantum + 1;
+        for (const Work& part : work.first(done)) {
+            int& quanta = state_.schedule.blocks[size_t(part.block)].quanta;
+            blocks_without_ -= quanta == 0;
+            quanta = part.quantum + 1;
+        }
         scheduling_seconds_ += seconds_since(merge);
         measure_pace(seconds_since(start), int(done), samples);
         done_ += int(done);
@@ -251,7 +296,7 @@ private:
         Progress progress{uniform_fraction(), seconds_since(start_), samples,
                           statistics.rays + statistics.shadow_rays};
         if (is_adaptive(options_)) {
-            progress.error = errors_.empty() || !has_picture_ ? 0 : block_p95(errors_);
+            progress.error = has_picture() ? block_p95(errors_decided_by()) : 0;
             if (options_.error > 0) progress.fraction = adaptive_fraction();
             if (options_.time_limit > 0)
                 progress.fraction = std::max(options_.error > 0 ? progress.fraction : 0,
@@ -267,16 +312,23 @@ private:
         return double(done_) / (double(quanta_.size()) * double(grid_.corners.size()));
     }
 
-    // Of the samples that the errors of the last round's end ask for: what is there already.
+    std::vector<BlockError> errors_decided_by() const
+    {
+        std::vector<BlockError> errors;
+        for (const BlockState& block : state_.schedule.blocks) errors.push_back(block.error);
+        return errors;
+    }
+
+    // Of the samples that the errors of the last decisions ask for: what is there already.
     double adaptive_fraction() const
     {
         double needed = 0, there = 0;
         for (size_t b = 0; b < grid_.corners.size(); ++b) {
             const BlockState& block = state_.schedule.blocks[b];
             double want = std::max(4, block.target);
-            if (has_picture_ && !block.is_done && block.target > block.quanta / 2) {
+            if (!block.is_done && block.target > block.quanta / 2) {
                 const double ratio =
-                    double(std::max(errors_[b].rms, errors_[b].worst_part / 3)) / target();
+                    double(std::max(block.error.rms, block.error.worst_part / 3)) / target();
                 want = std::max(want, 0.5 * block.target * ratio * ratio);
             }
             needed += want;
@@ -292,10 +344,11 @@ private:
     RenderState state_;
     Plan plan_;
     Clock::time_point start_;
-    std::vector<BlockError> errors_;  // at the end of the last round; adaptive
+    std::vector<Work> work_;  // rounds one after the other; from next_ on not done
+    size_t next_ = 0;
     std::vector<WorkItem> work_items_;
     Results results_;
-    bool has_picture_ = true;        // every block has a quantum
+    int blocks_without_ = 0;         // any quantum
     double seconds_per_sample_ = 0;  // of a block, in the last dispatch
     double seconds_under_way_ = 0;   // since nothing was
     double first_done_ = 0;
@@ -349,7 +402,7 @@ RenderState fresh_state(const SceneData& scene, const RenderOptions& options)
     const size_t blocks = grid_of(settings, options).corners.size();
     return {Film(settings.width, settings.height, window_of(settings, options),
                  film_batches(options), scene.textures.aovs),
-            {0, 0, 0, std::vector<BlockState>(blocks)}};
+            {.blocks = std::vector<BlockState>(blocks)}};
 }
 
 RenderResult render(Backend& backend, const SceneData& scene, const RenderOptions& options,

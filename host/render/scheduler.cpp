@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 
 namespace diptych {
 
@@ -60,15 +59,20 @@ std::vector<Work> work_by_pass(const Schedule& schedule)
     return work;
 }
 
-std::vector<Work> work_by_block(const Schedule& schedule, std::span<const Quantum> plan,
-                                std::span<const BlockError> errors)
+bool is_round_done(const Schedule& schedule, int team)
 {
-    std::vector<int> order(schedule.blocks.size());
-    std::iota(order.begin(), order.end(), 0);
-    if (!errors.empty())
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-            return errors[size_t(a)].rms > errors[size_t(b)].rms;
-        });
+    for (size_t b = size_t(team); b < schedule.blocks.size(); b += size_t(schedule.teams))
+        if (schedule.blocks[b].quanta < schedule.blocks[b].target) return false;
+    return true;
+}
+
+std::vector<Work> work_by_block(const Schedule& schedule, std::span<const Quantum> plan, int team)
+{
+    std::vector<int> order;
+    for (int b = team; b < int(schedule.blocks.size()); b += schedule.teams) order.push_back(b);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+        return schedule.blocks[size_t(a)].error.rms > schedule.blocks[size_t(b)].error.rms;
+    });
     std::vector<int> stretches(plan.size());  // of quanta of equal size
     for (size_t q = 1; q < plan.size(); ++q)
         stretches[q] = stretches[q - 1] + (plan[q].samples != plan[q - 1].samples ? 1 : 0);
@@ -153,25 +157,28 @@ double samples_needed(int samples, int error, int target)
     return samples * ratio * ratio;
 }
 
-bool is_converged(size_t block, const BlockMap& map, std::span<const BlockError> errors, int target)
+bool is_converged(size_t block, const BlockMap& map, const std::vector<BlockState>& blocks,
+                  int target)
 {
-    bool is_calm = error_of(errors[block]) <= target;
+    bool is_calm = error_of(blocks[block].error) <= target;
     if (is_calm)
-        map.for_neighbours(
-            block, [&](size_t other) { is_calm = is_calm && errors[other].rms <= 2 * target; });
+        map.for_neighbours(block, [&](size_t other) {
+            is_calm = is_calm && blocks[other].error.rms <= 2 * target;
+        });
     return is_calm;
 }
 
 // As many samples again as the pilot's error asks for, a neighbour's half as large counting as
 // well.
 void begin_after_pilot(Schedule& schedule, const BlockMap& map, std::span<const Quantum> plan,
-                       std::span<const BlockError> errors, const Targets& targets)
+                       const Targets& targets)
 {
     schedule.pilot = schedule.blocks[0].quanta;
     for (size_t b = 0; b < schedule.blocks.size(); ++b) {
         BlockState& block = schedule.blocks[b];
-        int error = error_of(errors[b]);
-        map.for_neighbours(b, [&](size_t o) { error = std::max(error, errors[o].rms / 2); });
+        int error = error_of(block.error);
+        map.for_neighbours(
+            b, [&](size_t o) { error = std::max(error, schedule.blocks[o].error.rms / 2); });
         const double needed = samples_needed(samples_of(block, plan), error, targets.error);
         const double quanta = std::ceil(std::max(needed, double(targets.least_samples)) / QUANTUM);
         block.target = int(std::min(block.quanta + quanta, double(plan.size())));
@@ -181,33 +188,35 @@ void begin_after_pilot(Schedule& schedule, const BlockMap& map, std::span<const 
 }  // namespace
 
 bool begin_adaptive_round(Schedule& schedule, const BlockGrid& grid, std::span<const Quantum> plan,
-                          std::span<const BlockError> errors, const Targets& targets)
+                          const Targets& targets)
 {
     const BlockMap map(grid);
     const int length = int(plan.size());
     const int least = std::min(targets.least_samples, samples_of({length, 0, false}, plan));
     bool is_work_left = false, is_pilot_over = targets.is_unbiased && schedule.pilot == 0;
-    for (size_t b = 0; b < schedule.blocks.size(); ++b) {
+    for (size_t b = size_t(schedule.turn); b < schedule.blocks.size();
+         b += size_t(schedule.teams)) {
         BlockState& block = schedule.blocks[b];
         const int samples = samples_of(block, plan);
         is_pilot_over = is_pilot_over && samples >= least;
         block.is_done = block.is_done || block.quanta >= length || schedule.pilot > 0 ||
                         (samples >= least && !targets.is_unbiased &&
-                         is_converged(b, map, errors, targets.error));
+                         is_converged(b, map, schedule.blocks, targets.error));
         if (block.is_done) continue;
         if (samples < least) {
             block.target = doubled(block, plan);
         } else {
             const double more =
-                samples_needed(samples, error_of(errors[b]), targets.error) - samples;
+                samples_needed(samples, error_of(block.error), targets.error) - samples;
             const double quanta = std::clamp(std::ceil(more / QUANTUM), 1.0,
                                              std::max(1.0, samples / double(QUANTUM)));
             block.target = std::min(block.quanta + int(quanta), length);
         }
         is_work_left = true;
     }
-    if (is_pilot_over && is_work_left) begin_after_pilot(schedule, map, plan, errors, targets);
+    if (is_pilot_over && is_work_left) begin_after_pilot(schedule, map, plan, targets);
     if (is_work_left) ++schedule.round;
+    schedule.turn = (schedule.turn + 1) % schedule.teams;
     return is_work_left;
 }
 

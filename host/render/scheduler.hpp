@@ -4,6 +4,10 @@
 // Work goes in rounds. A round gives every active block a target; its list of work is then fixed.
 // Decisions are taken between rounds only, so that a picture depends neither on how many work items
 // a dispatch holds nor on who runs them.
+//
+// The blocks of an adaptive render form two teams with rounds of their own, which take turns: while
+// the list of one is under way, the next round of the other is decided, and devices never run dry.
+// A decision sees the errors of the other team as they were when that team last decided.
 #pragma once
 
 #include "platform.h"
@@ -46,19 +50,30 @@ BlockGrid grid_of_pixel(int width, int height, Pixel pixel);
 // Lowest pixels of the picture's blocks in Morton order.
 std::vector<Pixel> blocks_of(int width, int height, int shift = BLOCK_SHIFT);
 
+// The predicted error of a block, in 1/1024 JND: whole numbers, so that decisions are the same
+// wherever they are taken.
+struct BlockError {
+    int rms = 0;         // over the block
+    int worst_part = 0;  // the largest RMS of its parts of 4 x 4 pixels
+};
+inline constexpr int error_unit = 1024;
+
 // Where a block stands; quanta and target count entries of the sample plan.
 struct BlockState {
     int quanta = 0;  // merged into the film
     int target = 0;  // to be merged by the end of the round
     bool is_done = false;
+    BlockError error = {};  // adaptive: when the round was decided
 };
 
-// Where a render stands. Together with the film it is complete after every dispatch: what a round
-// still has to do is every (block, quantum) with quanta <= quantum < target.
+// Where a render stands. Together with the film it is complete after every dispatch: what the
+// rounds under way still have to do is every (block, quantum) with quanta <= quantum < target.
 struct Schedule {
-    int round = 0;
+    int round = 0;  // how many have begun
     int level = 0;  // how often the error target has been lowered
     int pilot = 0;  // quanta at the start of each block that the film has forgotten again
+    int teams = 1;  // block b belongs to team b % teams
+    int turn = 0;   // the team that decides next: its round is the older one
     std::vector<BlockState> blocks;
 };
 
@@ -68,14 +83,6 @@ struct Work {
     int quantum;
 };
 
-// The predicted error of a block, in 1/1024 JND: whole numbers, so that decisions are the same
-// wherever they are taken.
-struct BlockError {
-    int rms = 0;         // over the block
-    int worst_part = 0;  // the largest RMS of its parts of 4 x 4 pixels
-};
-inline constexpr int error_unit = 1024;
-
 // When a block of an adaptive render is done.
 struct Targets {
     int error = error_unit;  // in 1/1024 JND, above 0
@@ -83,23 +90,24 @@ struct Targets {
     bool is_unbiased = false;
 };
 
-// The next round of an adaptive render: each block that is not done gets as many quanta as its
-// error asks for, at most as many as it has. A block is done when its error is below the target,
-// those of its parts below thrice and those of all its neighbours below twice the target, or when
-// the plan ends. errors: of each block. False when all are done.
+// The next round of the team whose turn it is, whose errors have been measured; the turn goes on.
+// Each block that is not done gets as many quanta as its error asks for, at most as many as it has.
+// A block is done when its error is below the target, those of its parts below thrice and those of
+// all its neighbours below twice the target, or when the plan ends. False when all of the team are.
 //
-// With is_unbiased the first least_samples of each block only say how many it needs; schedule.pilot
-// then becomes the number of quanta that the film is to forget.
+// With is_unbiased, and one team, the first least_samples of each block only say how many it needs;
+// schedule.pilot then becomes the number of quanta that the film is to forget.
 bool begin_adaptive_round(Schedule& schedule, const BlockGrid& grid, std::span<const Quantum> plan,
-                          std::span<const BlockError> errors, const Targets& targets);
+                          const Targets& targets);
+
+bool is_round_done(const Schedule& schedule, int team);
 
 // What is left of the round, pass by pass over the blocks. Quanta of different sizes never
 // alternate: the list falls into as few stretches of equal size as the plan has.
 std::vector<Work> work_by_pass(const Schedule& schedule);
 
-// The same, block by block, those of large error first; a block's quanta are neighbours.
-std::vector<Work> work_by_block(const Schedule& schedule, std::span<const Quantum> plan,
-                                std::span<const BlockError> errors);
+// The same of a team, block by block, those of large error first; a block's quanta are neighbours.
+std::vector<Work> work_by_block(const Schedule& schedule, std::span<const Quantum> plan, int team);
 
 // The next round of a uniform render: some passes over all blocks. False when the plan is done.
 bool begin_uniform_round(Schedule& schedule, int plan_length);

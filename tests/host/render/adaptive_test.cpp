@@ -86,6 +86,32 @@ TEST(Adaptive, GoesOnFromAnyDispatchToTheSamePicture)
     }
 }
 
+// Rounds follow each other without a pause where paths stay under way, in 4096 slots; the picture
+// is that of a backend which finishes every dispatch.
+TEST(Adaptive, RoundsLeaveNoSlotsIdle)
+{
+    SceneData scene = busy_scene(160, 96);
+    BackendOptions few_slots;
+    few_slots.memory_bytes = 3u << 20;
+    std::unique_ptr<Backend> opencl;
+    try {
+        opencl = make_backend("opencl", few_slots);
+    } catch (const std::runtime_error& error) {
+        GTEST_SKIP() << error.what();
+    }
+    opencl->upload(scene);
+    RenderOptions options = to_error(0.05);
+    options.samples = 128;
+    const RenderResult result = render(*opencl, scene, options);
+    EXPECT_GE(result.schedule.round, 8);
+    const double busy = double(result.statistics.busy_steps) / double(result.statistics.slot_steps);
+    RecordProperty("busy", std::to_string(busy));
+    EXPECT_GT(busy, 0.95);
+    const std::unique_ptr<Backend> twin = make_backend("twin", {});
+    twin->upload(scene);
+    EXPECT_TRUE(is_same(picture_of(result), picture_of(render(*twin, scene, options))));
+}
+
 TEST(Adaptive, ATimeLimitLeavesACompletePicture)
 {
     SceneData scene = busy_scene(72, 40);

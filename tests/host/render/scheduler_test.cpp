@@ -29,6 +29,12 @@ Schedule rendered(const BlockGrid& grid, int quanta)
     return schedule;
 }
 
+// As if measured.
+void set_errors(Schedule& schedule, const std::vector<BlockError>& errors)
+{
+    for (size_t b = 0; b < errors.size(); ++b) schedule.blocks[b].error = errors[b];
+}
+
 // Every quantum of a block comes once, in order, and sizes change as seldom as in the plan.
 void expect_in_order(const std::vector<Work>& work, const std::vector<Quantum>& plan,
                      Schedule schedule)
@@ -87,10 +93,9 @@ TEST(Scheduler, BeginsByDoublingUntilThereIsSomethingToDecideBy)
 {
     const BlockGrid grid = grid_of_blocks(48, 48);
     const std::vector<Quantum> plan = quanta_of(1024);
-    const std::vector<BlockError> perfect(grid.corners.size());
     Schedule schedule = schedule_of(grid);
     std::vector<int> quanta;
-    while (begin_adaptive_round(schedule, grid, plan, perfect, {})) {
+    while (begin_adaptive_round(schedule, grid, plan, {})) {
         finish(schedule);
         quanta.push_back(schedule.blocks[4].quanta);
     }
@@ -103,14 +108,15 @@ TEST(Scheduler, AsksForWhatTheErrorNeedsAndAtMostDoubles)
     const std::vector<Quantum> plan = quanta_of(16 * 64);
     Schedule schedule = rendered(grid, 16);
     // the root law: 1.25 times the error is 1.5625 times the samples, 9 quanta more
-    const std::vector<BlockError> errors = {
-        {one * 5 / 4, 0}, {9 * one, 0}, {one / 2, 3 * one + 3 * one / 4}, {one / 2, 0}, {0, 0}};
-    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, errors, {}));
+    set_errors(
+        schedule,
+        {{one * 5 / 4, 0}, {9 * one, 0}, {one / 2, 3 * one + 3 * one / 4}, {one / 2, 0}, {0, 0}});
+    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, {}));
     EXPECT_EQ(schedule.blocks[0].target, 25);
     EXPECT_EQ(schedule.blocks[1].target, 32);
     EXPECT_EQ(schedule.blocks[2].target, 25);  // for one of its parts
-    expect_in_order(work_by_block(schedule, plan, errors), plan, schedule);
-    EXPECT_EQ(work_by_block(schedule, plan, errors)[0].block, 1);  // the worst one first
+    expect_in_order(work_by_block(schedule, plan, 0), plan, schedule);
+    EXPECT_EQ(work_by_block(schedule, plan, 0)[0].block, 1);  // the worst one first
 }
 
 TEST(Scheduler, AGoodBlockWaitsForBadNeighbours)
@@ -125,7 +131,8 @@ TEST(Scheduler, AGoodBlockWaitsForBadNeighbours)
     };
     errors[at(3, 3)] = {2 * one + 1, 0};
     Schedule schedule = rendered(grid, 8);
-    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, errors, {}));
+    set_errors(schedule, errors);
+    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, {}));
     int active = 0;
     for (const BlockState& block : schedule.blocks) active += !block.is_done;
     EXPECT_EQ(active, 9);
@@ -133,7 +140,8 @@ TEST(Scheduler, AGoodBlockWaitsForBadNeighbours)
     EXPECT_EQ(schedule.blocks[at(4, 4)].target, 9);
     errors[at(3, 3)] = {2 * one, 0};  // not good itself, but good enough to stand beside
     schedule = rendered(grid, 8);
-    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, errors, {}));
+    set_errors(schedule, errors);
+    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, {}));
     active = 0;
     for (const BlockState& block : schedule.blocks) active += !block.is_done;
     EXPECT_EQ(active, 1);
@@ -143,10 +151,10 @@ TEST(Scheduler, EndsWithThePlan)
 {
     const BlockGrid grid = grid_of_blocks(32, 16);
     const std::vector<Quantum> plan = quanta_of(100);
-    const std::vector<BlockError> hopeless(2, {1 << 30, 1 << 30});
     Schedule schedule = schedule_of(grid);
-    while (begin_adaptive_round(schedule, grid, plan, hopeless, {})) {
-        expect_in_order(work_by_block(schedule, plan, hopeless), plan, schedule);
+    set_errors(schedule, {2, {1 << 30, 1 << 30}});
+    while (begin_adaptive_round(schedule, grid, plan, {})) {
+        expect_in_order(work_by_block(schedule, plan, 0), plan, schedule);
         finish(schedule);
     }
     for (const BlockState& block : schedule.blocks) EXPECT_EQ(block.quanta, int(plan.size()));
@@ -159,15 +167,35 @@ TEST(Scheduler, UnbiasedRendersDecideOnceByAPilot)
     Targets targets;
     targets.is_unbiased = true;
     Schedule schedule = rendered(grid, 4);
-    const std::vector<BlockError> errors = {{4 * one, 0}, {0, 0}, {0, 0}};
-    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, errors, targets));
+    set_errors(schedule, {{4 * one, 0}, {0, 0}, {0, 0}});
+    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, targets));
     EXPECT_EQ(schedule.pilot, 4);
     EXPECT_EQ(schedule.blocks[0].target, 4 + 64);
     EXPECT_EQ(schedule.blocks[1].target, 4 + 16);  // half its neighbour's error
     EXPECT_EQ(schedule.blocks[2].target, 4 + 4);
     finish(schedule);
-    const std::vector<BlockError> worse(3, {100 * one, 0});
-    EXPECT_FALSE(begin_adaptive_round(schedule, grid, plan, worse, targets));
+    set_errors(schedule, std::vector<BlockError>(3, {100 * one, 0}));
+    EXPECT_FALSE(begin_adaptive_round(schedule, grid, plan, targets));
+}
+
+TEST(Scheduler, TeamsDecideInTurnAndForTheirOwnBlocks)
+{
+    const BlockGrid grid = grid_of_blocks(16 * 4, 16);
+    const std::vector<Quantum> plan = quanta_of(4096);
+    Schedule schedule = rendered(grid, 8);
+    schedule.teams = 2;
+    set_errors(schedule, std::vector<BlockError>(4, {9 * one, 0}));
+    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, {}));
+    EXPECT_EQ(schedule.turn, 1);
+    EXPECT_FALSE(is_round_done(schedule, 0));
+    EXPECT_TRUE(is_round_done(schedule, 1));
+    for (size_t b = 0; b < 4; ++b) EXPECT_EQ(schedule.blocks[b].target, b % 2 == 0 ? 16 : 8);
+    for (const Work& work : work_by_block(schedule, plan, 0)) EXPECT_EQ(work.block % 2, 0);
+    EXPECT_TRUE(work_by_block(schedule, plan, 1).empty());
+    set_errors(schedule, std::vector<BlockError>(4));
+    EXPECT_FALSE(begin_adaptive_round(schedule, grid, plan, {}));
+    EXPECT_EQ(schedule.turn, 0);
+    for (size_t b = 0; b < 4; ++b) EXPECT_EQ(schedule.blocks[b].is_done, b % 2 == 1);
 }
 
 }  // namespace
