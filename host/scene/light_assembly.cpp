@@ -56,6 +56,10 @@ Light packed_light(const PunctualLight& light)
     return packed;
 }
 
+// Radiance that white surfaces about the scene would have, of the light that nothing blocks: less
+// is black in a picture, a step or two of 255.
+constexpr double dark = 0.001;
+
 }  // namespace
 
 void SceneAssembly::add_triangle_lights(std::vector<double>& powers)
@@ -133,6 +137,12 @@ void SceneAssembly::assemble_lights()
             throw SceneError("the scene: its lights' power is not finite; dim them");
         }
         data_.lights.clear();
+    }
+    if (total > 0 && total < dark * 4 * pi * pi * radius * radius) {
+        data_.notices.push_back(fmt::format(
+            "lights: all that the scene has give {:.2g} W, and leave it nearly black; light it "
+            "with --env FILE, or raise --exposure",
+            total));
     }
     for (size_t k = 0; k < data_.lights.size(); ++k) {
         data_.lights[k].emission.w = float(powers[k] / total);
