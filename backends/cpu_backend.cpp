@@ -24,7 +24,8 @@ namespace {
 constexpr int result_rows = 0 RESULT_BUFFERS(COUNT_ROW);
 constexpr int texture_result_rows = 0 TEXTURE_RESULT_BUFFERS(COUNT_ROW);
 
-const float one_cell[] = {0, 1, 0, 1};  // of an environment: the row's share, the column's in it
+// Of an environment: the rows' shares, the column's in each, the only node's brightness.
+const float two_cells[] = {0, 0.5f, 1, 0, 1, 0, 1, 0};
 
 class CpuBackend final : public Backend {
 public:
@@ -163,9 +164,10 @@ void CpuBackend::add_neutral(const SceneData& scene)
 {
     const unsigned covered = kernels_.covered_effects(scene.effects);
     neutral_settings_ = scene.settings.at(0);
-    if (neutral_settings_.environment_width == 0) {  // one black texel, one cell
+    if (neutral_settings_.environment_width == 0) {  // one black texel, two cells
         neutral_settings_.environment_width = neutral_settings_.environment_height = 1;
-        neutral_settings_.cell_columns = neutral_settings_.cell_rows = 1;
+        neutral_settings_.cell_columns = 1;
+        neutral_settings_.cell_rows = 2;
         neutral_settings_.environment_scale = make_float4(0, 0, 0, 0);
     }
     buffers_[0] = &neutral_settings_;
@@ -184,7 +186,7 @@ void CpuBackend::add_neutral(const SceneData& scene)
     if (std::string_view(#name) == "environment_cells") cells = row; \
     ++row;
     SCENE_BUFFERS(FIND_ROW)
-    if (scene.environment_cells.empty()) buffers_[cells] = one_cell;
+    if (scene.environment_cells.empty()) buffers_[cells] = two_cells;
     if (covered & EFFECT_SMOOTH_NORMALS)
         replace(neutral_normals_, scene.normals, NORMAL_FLAT, normals);
     if (covered & EFFECT_NORMAL_MAP) replace(neutral_tangents_, scene.tangents, 0u, tangents);

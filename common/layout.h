@@ -39,7 +39,7 @@ typedef struct {
     int environment_height;
     int environment_texels;  // index of the first one in texels_float
     int environment_light;   // index in lights, or -1
-    int cell_columns;  // the environment's importance cells (environment_cells), equal in u and v
+    int cell_columns;        // the environment's importance cells: see common/lights/environment.h
     int cell_rows;
     float environment_probability;  // of choosing the environment as the light
     float scene_radius;             // of the bounding sphere
@@ -55,7 +55,7 @@ typedef struct {
     int reserved[3];
 } Settings;
 
-#define MOST_ENVIRONMENT_CELLS 1024  // in a row or a column: ten halvings find one
+#define MOST_ENVIRONMENT_CELLS 4096  // in a row or a column: twelve halvings find one
 
 #define CAMERA_PERSPECTIVE 0
 #define CAMERA_ORTHOGRAPHIC 1

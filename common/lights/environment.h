@@ -1,6 +1,6 @@
 // Light from everywhere: a latitude-longitude image, row 0 at +Y, u = 0.5 + atan2(z, x) / 2 pi, v =
-// acos(y) / pi in the environment's own frame. Sampled by cells of equal angle, in proportion to
-// their power, by inversion: neighbouring sample values give neighbouring directions, so that the
+// acos(y) / pi in the environment's own frame. Sampled in proportion to the filtered map's
+// brightness, by inversion: neighbouring sample values give neighbouring directions, so that the
 // spread of the samples over the unit square survives.
 #pragma once
 
@@ -72,9 +72,15 @@ SHARED float3 environment_radiance(const Scene* scene, float2 uv)
 }
 
 // environment_cells: the cumulated shares of the rows (cell_rows + 1 values from 0 to 1), then
-// those of the columns within each row (cell_columns + 1 values each). They are multiples of 2^-24,
-// as sample values are: differences are exact, and are the very probabilities with which sample
-// values fall between two of them.
+// those of the columns within each row (cell_columns + 1 values each), then the brightness at the
+// nodes, cell_columns in each of cell_rows - 1 rows. Shares are multiples of 2^-24, as sample
+// values are: differences are exact, and are the very probabilities with which sample values fall
+// between two of them.
+//
+// A node is the middle of a texel (in maps of more than MOST_ENVIRONMENT_CELLS, of a few). A cell
+// reaches from four of them to each other: column k from node k to node k + 1, around the seam, and
+// row k from node k - 1 to node k; the first and the last row end at the poles, after half the way.
+// Within a cell the density follows the brightness at its corners, as the filtered map does.
 SHARED int environment_row_start(const Scene* scene, int row)
 {
     return scene->settings[0].cell_rows + 1 + row * (scene->settings[0].cell_columns + 1);
@@ -98,6 +104,8 @@ SHARED int environment_advance(const Scene* scene, int start, int count, float u
 SHARED int environment_find(const Scene* scene, int start, int count, float u)
 {
     int found = 0;
+    found = environment_advance(scene, start, count, u, found, 2048);
+    found = environment_advance(scene, start, count, u, found, 1024);
     found = environment_advance(scene, start, count, u, found, 512);
     found = environment_advance(scene, start, count, u, found, 256);
     found = environment_advance(scene, start, count, u, found, 128);
@@ -119,13 +127,70 @@ SHARED float environment_within(const Scene* scene, int start, int cell, float u
     return share > 0.0f ? rest / share : 0.5f;
 }
 
-// Density over solid angle of a cell of that share of all, at the angle v * pi from the pole.
-SHARED float environment_density(const Scene* scene, float share, float v)
+SHARED float environment_node(const Scene* scene, int row, int column)
+{
+    const int columns = scene->settings[0].cell_columns;
+    const int last = scene->settings[0].cell_rows - 2;
+    const int first = environment_row_start(scene, scene->settings[0].cell_rows);
+    const int y = row < 0 ? 0 : (row > last ? last : row);
+    const int x = column < columns ? column : 0;
+    return scene->environment_cells[first + y * columns + x];
+}
+
+// Brightness at a cell's corners, in proportion to their sum; even where all are dark.
+typedef struct {
+    float top_left;
+    float top_right;
+    float bottom_left;
+    float bottom_right;
+} EnvironmentCorners;
+
+SHARED EnvironmentCorners environment_corners(const Scene* scene, int row, int column)
+{
+    EnvironmentCorners corners;
+    corners.top_left = environment_node(scene, row - 1, column);
+    corners.top_right = environment_node(scene, row - 1, column + 1);
+    corners.bottom_left = environment_node(scene, row, column);
+    corners.bottom_right = environment_node(scene, row, column + 1);
+    const float sum =
+        (corners.top_left + corners.top_right) + (corners.bottom_left + corners.bottom_right);
+    const float inverse = sum > 0.0f ? 1.0f / sum : 0.0f;
+    corners.top_left = sum > 0.0f ? corners.top_left * inverse : 0.25f;
+    corners.top_right = sum > 0.0f ? corners.top_right * inverse : 0.25f;
+    corners.bottom_left = sum > 0.0f ? corners.bottom_left * inverse : 0.25f;
+    corners.bottom_right = sum > 0.0f ? corners.bottom_right * inverse : 0.25f;
+    return corners;
+}
+
+// Where a density that rises evenly from a to b has the share u in (0, 1] of its sum behind it.
+SHARED float environment_ramp(float a, float b, float u)
+{
+    const float root = math_sqrt(math_lerp(a * a, b * b, u));
+    const float t = a + root > 0.0f ? u * (a + b) / (a + root) : u;
+    return t < 1.0f ? t : 1.0f;
+}
+
+// How far a cell's row reaches, from its upper to its lower nodes: from x to y.
+SHARED float2 environment_reach(const Scene* scene, int row)
+{
+    return make_float2(row == 0 ? 0.5f : 0.0f,
+                       row == scene->settings[0].cell_rows - 1 ? 0.5f : 1.0f);
+}
+
+// Density over solid angle at a place in a cell, from its upper left to its lower right node, that
+// has a share of all; v * pi is its angle from the pole.
+SHARED float environment_density(const Scene* scene, int row, EnvironmentCorners corners,
+                                 float2 place, float share, float v)
 {
     const float cells =
-        (float)scene->settings[0].cell_columns * (float)scene->settings[0].cell_rows;
+        (float)scene->settings[0].cell_columns * (float)(scene->settings[0].cell_rows - 1);
+    const float2 reach = environment_reach(scene, row);
+    const float top = math_lerp(corners.top_left, corners.top_right, place.x);
+    const float bottom = math_lerp(corners.bottom_left, corners.bottom_right, place.x);
+    const float over_mean = 4.0f * math_lerp(top, bottom, place.y);
     const float sine = math_sinpi(v);
-    return sine > 0.0f ? share * cells / (2.0f * PI * PI * sine) : 0.0f;
+    const float area = 2.0f * PI * PI * sine * (reach.y - reach.x);
+    return sine > 0.0f ? share * over_mean * cells / area : 0.0f;
 }
 
 // Density over solid angle at uv of environment_light_sample, without the choice of the light.
@@ -133,13 +198,17 @@ SHARED float environment_pdf(const Scene* scene, float2 uv)
 {
     const int columns = scene->settings[0].cell_columns;
     const int rows = scene->settings[0].cell_rows;
-    const int x = (int)(uv.x * (float)columns);
-    const int y = (int)(uv.y * (float)rows);
-    const int column = x < 0 ? 0 : (x >= columns ? columns - 1 : x);
-    const int row = y < 0 ? 0 : (y >= rows ? rows - 1 : y);
+    const float x = uv.x * (float)columns - 0.5f;
+    const float y = uv.y * (float)(rows - 1) + 0.5f;
+    const float floor_x = math_floor(x);
+    const float floor_y = math_floor(y);
+    const int left = (int)floor_x;
+    const int column = left < 0 ? left + columns : (left >= columns ? left - columns : left);
+    const int row = floor_y < 0.0f ? 0 : (floor_y > (float)(rows - 1) ? rows - 1 : (int)floor_y);
     const float share = environment_share(scene, 0, row) *
                         environment_share(scene, environment_row_start(scene, row), column);
-    return environment_density(scene, share, uv.y);
+    return environment_density(scene, row, environment_corners(scene, row, column),
+                               make_float2(x - floor_x, y - floor_y), share, uv.y);
 }
 
 // u in [0, 1)^2: y picks the row and the height in it, x the column and the place in that.
@@ -150,9 +219,17 @@ SHARED LightSample environment_light_sample(const Scene* scene, float2 u)
     const int row = environment_find(scene, 0, rows, u.y);
     const int start = environment_row_start(scene, row);
     const int column = environment_find(scene, start, columns, u.x);
-    const float x = (float)column + environment_within(scene, start, column, u.x);
-    const float y = (float)row + environment_within(scene, 0, row, u.y);
-    const float2 uv = make_float2(x / (float)columns, y / (float)rows);
+    const EnvironmentCorners corners = environment_corners(scene, row, column);
+    const float2 reach = environment_reach(scene, row);
+    const float down = environment_ramp(corners.top_left + corners.top_right,
+                                        corners.bottom_left + corners.bottom_right,
+                                        environment_within(scene, 0, row, u.y));
+    const float y = math_lerp(reach.x, reach.y, down);
+    const float x = environment_ramp(math_lerp(corners.top_left, corners.bottom_left, y),
+                                     math_lerp(corners.top_right, corners.bottom_right, y),
+                                     environment_within(scene, start, column, u.x));
+    const float2 uv = make_float2(((float)column + 0.5f + x) / (float)columns,
+                                  ((float)row - 0.5f + y) / (float)(rows - 1));
     const float around = 2.0f * uv.x - 1.0f;
     const float sine = math_sinpi(uv.y);
     const float3 in_environment =
@@ -163,8 +240,8 @@ SHARED LightSample environment_light_sample(const Scene* scene, float2 u)
     sample.direction = direction_from_environment(scene, in_environment);
     sample.distance = FLOAT_MAX;
     sample.radiance = environment_radiance(scene, uv);
-    sample.pdf =
-        scene->settings[0].environment_probability * environment_density(scene, share, uv.y);
+    sample.pdf = scene->settings[0].environment_probability *
+                 environment_density(scene, row, corners, make_float2(x, y), share, uv.y);
     sample.is_punctual = 0;
     return sample;
 }

@@ -12,17 +12,17 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int most_cell_columns = 1024;
-constexpr int most_cell_rows = 512;
-static_assert(most_cell_columns <= MOST_ENVIRONMENT_CELLS &&
-              most_cell_rows <= MOST_ENVIRONMENT_CELLS);
+constexpr int most_node_columns = 4096;
+constexpr int most_node_rows = 2048;
+static_assert(most_node_columns <= MOST_ENVIRONMENT_CELLS &&
+              most_node_rows + 1 <= MOST_ENVIRONMENT_CELLS);
 
-// Part of a cell's weight that follows the brightest texel reaching into it rather than the mean,
-// so that a bright corner is never much rarer than it is bright.
+// Where a node stands for several texels: the part of its brightness that follows the brightest one
+// rather than the mean, so that it is never much rarer than it is bright.
 constexpr double peak_share = 0.05;
 
-// The texels whose linear filter reaches into an interval of cell `cell` of `cells`, and the part
-// that each has in the interval's mean.
+// The texels whose linear filter reaches into interval `cell` of `cells`, and the part that each
+// has in the interval's mean.
 struct Footprint {
     int first;
     std::vector<double> shares;
@@ -58,26 +58,54 @@ std::vector<float> luminance_map(const Picture& map)
     return result;
 }
 
-// Mean and peak of the filtered luminance over a cell; columns wrap, rows end at the poles.
-struct CellBrightness {
-    double mean = 0;
-    double peak = 0;
-};
-
-CellBrightness brightness(const std::vector<float>& map, int width, int height,
-                          const Footprint& across, const Footprint& down)
+// Of the filtered luminance over an area; columns wrap, rows end at the poles.
+double brightness(const std::vector<float>& map, int width, int height, const Footprint& across,
+                  const Footprint& down)
 {
-    CellBrightness result;
+    double mean = 0, peak = 0;
     for (size_t j = 0; j < down.shares.size(); ++j) {
         const int row = std::clamp(down.first + int(j), 0, height - 1);
         for (size_t i = 0; i < across.shares.size(); ++i) {
             const int column = ((across.first + int(i)) % width + width) % width;
             const double value = map[size_t(row) * size_t(width) + size_t(column)];
-            result.mean += value * across.shares[i] * down.shares[j];
-            result.peak = std::max(result.peak, value);
+            mean += value * across.shares[i] * down.shares[j];
+            peak = std::max(peak, value);
         }
     }
-    return result;
+    return mean + peak_share * peak;
+}
+
+// Brightness at the middles of texels, or, in larger maps, of equal areas of as many texels.
+struct Nodes {
+    int columns;
+    int rows;
+    std::vector<float> values;
+
+    double at(int row, int column) const
+    {
+        const size_t y = size_t(std::clamp(row, 0, rows - 1)), x = size_t(column % columns);
+        return double(values[y * size_t(columns) + x]);
+    }
+};
+
+Nodes nodes_of(std::vector<float> map, int width, int height)
+{
+    Nodes nodes{std::min(width, most_node_columns), std::min(height, most_node_rows), {}};
+    if (nodes.columns == width && nodes.rows == height) {
+        nodes.values = std::move(map);
+        return nodes;
+    }
+    std::vector<Footprint> across;
+    for (int column = 0; column < nodes.columns; ++column) {
+        across.push_back(footprint(column, nodes.columns, width));
+    }
+    for (int row = 0; row < nodes.rows; ++row) {
+        const Footprint down = footprint(row, nodes.rows, height);
+        for (const Footprint& of_column : across) {
+            nodes.values.push_back(float(brightness(map, width, height, of_column, down)));
+        }
+    }
+    return nodes;
 }
 
 // Appends the cumulated shares of the weights: count + 1 values from 0 to 1, never falling, in
@@ -159,30 +187,30 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
             {map.floats[t], map.floats[t + 1], map.floats[t + 2], map.floats[t + 3]});
     }
 
-    const int columns = std::min(map.width, most_cell_columns);
-    const int rows = std::min(map.height, most_cell_rows);
-    const std::vector<float> bright = luminance_map(map);
-    std::vector<Footprint> across;
-    for (int column = 0; column < columns; ++column) {
-        across.push_back(footprint(column, columns, map.width));
-    }
+    const Nodes nodes = nodes_of(luminance_map(map), map.width, map.height);
+    const int columns = nodes.columns, rows = nodes.rows + 1;
     std::vector<double> weights;
     weights.reserve(size_t(columns) * size_t(rows));
     double integral = 0;
     for (int row = 0; row < rows; ++row) {
-        const Footprint down = footprint(row, rows, map.height);
+        const double upper = std::max(row - 0.5, 0.0), lower = std::min(row + 0.5, rows - 1.0);
         const double solid_angle =
-            2 * pi / columns * (std::cos(pi * row / rows) - std::cos(pi * (row + 1) / rows));
+            2 * pi / columns *
+            (std::cos(pi * upper / nodes.rows) - std::cos(pi * lower / nodes.rows));
         for (int column = 0; column < columns; ++column) {
-            const CellBrightness cell =
-                brightness(bright, map.width, map.height, across[size_t(column)], down);
-            weights.push_back((cell.mean + peak_share * cell.peak) * solid_angle);
-            integral += cell.mean * solid_angle;
+            const double mean = 0.25 * (nodes.at(row - 1, column) + nodes.at(row - 1, column + 1) +
+                                        nodes.at(row, column) + nodes.at(row, column + 1));
+            weights.push_back(mean * solid_angle);
+            integral += mean * solid_angle;
         }
     }
     s.cell_columns = columns;
     s.cell_rows = rows;
     cumulate(weights, rows, columns, data.environment_cells);
+    const float most = *std::max_element(nodes.values.begin(), nodes.values.end());
+    for (const float value : nodes.values) {
+        data.environment_cells.push_back(most > 0 ? value / most : 0);
+    }
     if (file.bad_texels > 0) {
         data.notices.push_back("environment: " + std::to_string(file.bad_texels) +
                                " values were NaN, infinite or negative; they were replaced");

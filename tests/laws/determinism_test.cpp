@@ -177,8 +177,9 @@ TEST_P(Determinism, AnEffectNotCalledForChangesNoPixel)
     full.texels_8.push_back(~0u);
     full.texels_float.push_back({0, 0, 0, 0});
     full.settings[0].environment_width = full.settings[0].environment_height = 1;
-    full.settings[0].cell_columns = full.settings[0].cell_rows = 1;
-    full.environment_cells = {0, 1, 0, 1};
+    full.settings[0].cell_columns = 1;
+    full.settings[0].cell_rows = 2;
+    full.environment_cells = {0, 0.5f, 1, 0, 1, 0, 1, 0};
     const auto expect_same_with = [&](unsigned effects, const std::string& name) {
         full.bvh_nodes.clear();  // the trees' shape follows the effects
         full.bvh_items.clear();

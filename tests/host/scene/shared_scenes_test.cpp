@@ -101,7 +101,9 @@ void expect_sound(const SceneData& d)
         ASSERT_TRUE(in(light.instance, d.instances.size()));
     }
     EXPECT_NEAR(total, d.lights.empty() ? 0 : 1, 1e-3);
-    const size_t cells = size_t(s.cell_rows + 1) + size_t(s.cell_rows) * size_t(s.cell_columns + 1);
+    const size_t cells = size_t(s.cell_rows + 1) +
+                         size_t(s.cell_rows) * size_t(s.cell_columns + 1) +
+                         size_t(s.cell_rows - 1) * size_t(s.cell_columns);
     EXPECT_EQ(d.environment_cells.size(), s.environment_width > 0 ? cells : 0);
     EXPECT_TRUE(is_finite(s.camera_origin) && is_finite(s.camera_right));
     EXPECT_TRUE(std::isfinite(s.scene_radius));
