@@ -13,8 +13,11 @@
 #include <dlfcn.h>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <future>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
 #include <unistd.h>
 
 namespace diptych {
@@ -26,16 +29,26 @@ constexpr const char* entry_name = "diptych_evaluate_textures";
 constexpr const char* watch_name = "diptych_watch_textures";
 std::atomic<unsigned long> compilations{0};
 
+// A name that no other thread or process has, beside the file that it becomes.
+fs::path unfinished(const fs::path& file)
+{
+    static std::atomic<unsigned> count{0};
+    return file.string() + "." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".tmp";
+}
+
+// At once: who reads at the same time finds all of a text, old or new.
 void write_text(const fs::path& file, const std::string& text)
 {
     fs::create_directories(file.parent_path());
-    std::ofstream out(file, std::ios::binary);
+    const fs::path part = unfinished(file);
+    std::ofstream out(part, std::ios::binary);
     out << text;
     out.close();
     if (!out.good())
         throw std::runtime_error(file.string() +
                                  ": cannot be written; free the disk, or set "
                                  "DIPTYCH_CACHE_DIR to a folder that can be written");
+    fs::rename(part, file);
 }
 
 // What the compiler is and what -march=native means to it.
@@ -67,22 +80,26 @@ std::string processor()
     return model + flags;
 }
 
-// g++'s jump threading takes loops apart that it would else have put into lanes (fbm, worley);
-// clang knows no such flag.
-void keep_loops_whole(const std::string& program, std::vector<std::string>& flags)
+// What g++ alone needs: its jump threading takes loops apart that it would else have put into lanes
+// (fbm, worley), and combining more than two instructions is half of its work on large loops
+// (marble), which run no faster for it.
+void add_flags_of_gcc(const std::string& program, std::vector<std::string>& flags)
 {
-    const char* flag = "-fno-thread-jumps";
-    if (run_program({program, flag, "-E", "-x", "c", "/dev/null"}).exit_code == 0)
-        flags.push_back(flag);
+    const std::vector<std::string> own = {"-fno-thread-jumps", "--param=max-combine-insns=2"};
+    if (run_program({program, own[0], own[1], "-E", "-x", "c", "/dev/null"}).exit_code == 0)
+        flags.insert(flags.end(), own.begin(), own.end());
+}
+
+bool is_in_lanes(const NativeStageOptions& options)
+{
+    return options.kind == NativeStageKind::vector && !options.is_debug;
 }
 
 // As kernels_cpu/CMakeLists.txt compiles the kernel sets.
 std::vector<std::string> flags_for(const NativeStageOptions& options)
 {
-    const bool is_vector = options.kind == NativeStageKind::vector;
     const bool is_double = options.kind == NativeStageKind::reference;
     std::vector<std::string> flags = {"-std=c++20",
-                                      "-shared",
                                       "-fPIC",
                                       "-w",
                                       "-fvisibility=hidden",
@@ -94,8 +111,6 @@ std::vector<std::string> flags_for(const NativeStageOptions& options)
                                       "-fwrapv",
                                       "-fno-strict-aliasing",
                                       "-fopenmp-simd",
-                                      std::string("-DVECTORISED=") +
-                                          (is_vector && !options.is_debug ? "1" : "0"),
                                       std::string("-DDIALECT_") + (is_double ? "double" : "float")};
     if (options.kind == NativeStageKind::silent) {
         flags.insert(flags.end(), {"-O1", "-DALWAYS_INLINE="});
@@ -109,17 +124,12 @@ std::vector<std::string> flags_for(const NativeStageOptions& options)
     flags.push_back("-DALWAYS_INLINE=__attribute__((always_inline))");
     // Where a value lies at each instruction is a quarter of g++'s work and little use in lanes:
     // debuggers run the scalar stage. Lines and names stay.
-    if (is_vector)
+    if (is_in_lanes(options))
         flags.insert(flags.end(), {"-O3", "-march=native", "-fno-var-tracking"});
     else
         flags.insert(flags.end(), {"-O2", "-fno-tree-vectorize"});
     return flags;
 }
-
-struct Sources {
-    std::string functions;
-    std::string key;  // of everything that goes into the object
-};
 
 fs::path cache_folder()
 {
@@ -128,8 +138,27 @@ fs::path cache_folder()
                           : folder;
 }
 
-std::string key_of(const std::string& program, const std::vector<std::string>& flags,
-                   const std::string& functions)
+const std::string& headers_digest()
+{
+    static const std::string digest = [] {
+        Sha256 hash;
+        for (const StageHeader* header = stage_headers; header->path; ++header)
+            hash.add(std::string(header->path) + ":" + header->text());
+        return hash.finish().substr(0, 32);
+    }();
+    return digest;
+}
+
+// One call of the compiler.
+struct Source {
+    const char* file;  // from the root of the tree
+    const char* dialect;
+    std::string functions;  // TEXTURE_FUNCTIONS_FILE
+    std::vector<std::string> flags;
+};
+
+// Of everything that goes into what the compiler makes.
+std::string key_of(const std::string& program, const Source& source)
 {
     Sha256 hash;
     const auto add = [&](const std::string& part) {
@@ -141,10 +170,12 @@ std::string key_of(const std::string& program, const std::vector<std::string>& f
     add(std::to_string(fs::file_size(program, error)));
     add(std::to_string(fs::last_write_time(program, error).time_since_epoch().count()));
     add(processor());
-    for (const std::string& flag : flags) add(flag);
-    for (const StageHeader* header = stage_headers; header->path; ++header) add(header->text());
-    add(functions);
-    return hash.finish();
+    add(source.file);
+    add(source.dialect);
+    for (const std::string& flag : source.flags) add(flag);
+    add(headers_digest());
+    add(source.functions);
+    return hash.finish().substr(0, 32);
 }
 
 // The object's own digest lies beside it: a file cut short must not be loaded.
@@ -157,37 +188,98 @@ bool is_whole(const fs::path& object)
     return hash.finish() == text_of(object.string() + ".sha256");
 }
 
-void write_headers(const fs::path& folder)
+// The embedded sources, in a folder that all compilations share.
+fs::path headers()
 {
-    for (const StageHeader* header = stage_headers; header->path; ++header)
-        write_text(folder / header->path, header->text());
+    const fs::path folder = cache_folder() / "textures" / "headers" / headers_digest();
+    for (const StageHeader* header = stage_headers; header->path; ++header) {
+        const std::string text = header->text();
+        if (text_of(folder / header->path) != text) write_text(folder / header->path, text);
+    }
+    return folder;
 }
 
-void compile(const std::string& program, std::vector<std::string> flags, const fs::path& folder,
-             const fs::path& object, const NativeStageOptions& options)
+// Runs the compiler, and keeps what it makes with its digest.
+void make(std::vector<std::string> command, const fs::path& object, const fs::path& functions)
 {
-    const fs::path root = folder / "headers";
-    const char* dialect = options.kind == NativeStageKind::reference ? "as_double" : "as_cpp";
-    const fs::path unfinished = object.string() + "." + std::to_string(getpid()) + ".tmp";
-    std::vector<std::string> command = {program};
-    command.insert(command.end(), flags.begin(), flags.end());
-    command.insert(command.end(),
-                   {"-I" + root.string(), "-I" + (root / "common" / dialect).string(),
-                    "-I" + folder.string(), "-DTEXTURE_FUNCTIONS_FILE=\"functions.hpp\"", "-o",
-                    unfinished.string(), (root / "kernels_cpu/texture_stage.cpp").string()});
+    fs::create_directories(object.parent_path());
+    const fs::path part = unfinished(object);
+    command.insert(command.end(), {"-o", part.string()});
     const Finished done = run_program(command);
-    count_texture_compilation();
     if (done.exit_code != 0) {
         std::error_code ignored;
-        fs::remove(unfinished, ignored);
-        throw std::runtime_error("procedural textures: " + program +
-                                 " refuses the generated code (" +
-                                 (folder / "functions.hpp").string() + "):\n" + done.output);
+        fs::remove(part, ignored);
+        throw std::runtime_error("procedural textures: " + command[0] +
+                                 " refuses the generated code (" + functions.string() + "):\n" +
+                                 done.output);
     }
     Sha256 hash;
-    hash.add(text_of(unfinished));
+    hash.add(text_of(part));
     write_text(object.string() + ".sha256", hash.finish());
-    fs::rename(unfinished, object);
+    fs::rename(part, object);
+}
+
+void compile(const std::string& program, const Source& source, const fs::path& root,
+             const fs::path& object)
+{
+    const fs::path functions = object.parent_path() / "functions.hpp";
+    write_text(functions, source.functions);
+    std::vector<std::string> command = {program};
+    command.insert(command.end(), source.flags.begin(), source.flags.end());
+    command.insert(command.end(),
+                   {"-I" + root.string(), "-I" + (root / "common" / source.dialect).string(),
+                    "-I" + object.parent_path().string(),
+                    "-DTEXTURE_FUNCTIONS_FILE=\"functions.hpp\"", (root / source.file).string()});
+    make(command, object, functions);
+}
+
+// Calls work(0) to work(count - 1), as many at a time as there are processors; throws what one
+// threw.
+void for_each_at_once(size_t count, const std::function<void(size_t)>& work)
+{
+    std::atomic<size_t> next{0};
+    const auto take = [&] {
+        for (size_t k = next++; k < count; k = next++) work(k);
+    };
+    std::vector<std::future<void>> others;
+    const size_t threads = std::max(1u, std::thread::hardware_concurrency());
+    for (size_t k = 1; k < std::min(count, threads); ++k)
+        others.push_back(std::async(std::launch::async, take));
+    take();
+    for (std::future<void>& other : others) other.get();
+}
+
+// The stage in lanes, an object for each loop: those of functions that were not edited are there.
+std::vector<Source> sources_in_lanes(const SceneData& scene, const CppTextures& textures,
+                                     const std::vector<std::string>& flags)
+{
+    std::vector<Source> sources;
+    for (size_t k = 0; k < textures.functions.size(); ++k)
+        for (const char* is_uniform : {"1", "0"}) {
+            sources.push_back(
+                {"kernels_cpu/texture_loop.cpp", "as_cpp", textures.functions[k], flags});
+            std::vector<std::string>& own = sources.back().flags;
+            own.push_back("-DTEXTURE_ID=" + scene.textures.functions[k].id);
+            own.push_back(std::string("-DIS_UNIFORM=") + is_uniform);
+        }
+    sources.push_back({"kernels_cpu/texture_lanes.cpp", "as_cpp", textures.definitions, flags});
+    for (Source& source : sources) source.flags.push_back("-c");
+    return sources;
+}
+
+void compile_lanes(const std::string& program, const std::vector<Source>& sources,
+                   const fs::path& root, const fs::path& object)
+{
+    std::vector<std::string> objects(sources.size());
+    for_each_at_once(sources.size(), [&](size_t k) {
+        const fs::path made =
+            cache_folder() / "textures" / "objects" / key_of(program, sources[k]) / "part.o";
+        if (!is_whole(made)) compile(program, sources[k], root, made);
+        objects[k] = made.string();
+    });
+    std::vector<std::string> command = {program, "-shared"};
+    command.insert(command.end(), objects.begin(), objects.end());
+    make(command, object, object.parent_path() / "functions.hpp");
 }
 
 }  // namespace
@@ -199,17 +291,20 @@ NativeStage::NativeStage(const SceneData& scene, const NativeStageOptions& optio
 {
     const std::string program = compiler();
     std::vector<std::string> flags = flags_for(options);
-    if (options.kind == NativeStageKind::vector && !options.is_debug)
-        keep_loops_whole(program, flags);
-    const std::string functions =
-        cpp_texture_functions(scene, {options.generated_dir, options.use_generated});
-    const std::string key = key_of(program, flags, functions);
-    const fs::path folder = cache_folder() / "textures" / key.substr(0, 32);
-    const fs::path object = folder / "stage.so";
+    if (is_in_lanes(options)) add_flags_of_gcc(program, flags);
+    const CppTextures textures =
+        cpp_textures(scene, {options.generated_dir, options.use_generated});
+    const char* dialect = options.kind == NativeStageKind::reference ? "as_double" : "as_cpp";
+    Source whole{"kernels_cpu/texture_stage.cpp", dialect, textures.all, flags};
+    whole.flags.push_back("-shared");
+    const fs::path object = cache_folder() / "textures" / key_of(program, whole) / "stage.so";
     if (!is_whole(object)) {
-        write_headers(folder / "headers");
-        write_text(folder / "functions.hpp", functions);
-        compile(program, flags, folder, object, options);
+        const fs::path root = headers();
+        if (is_in_lanes(options))
+            compile_lanes(program, sources_in_lanes(scene, textures, flags), root, object);
+        else
+            compile(program, whole, root, object);
+        count_texture_compilation();
         was_compiled_ = true;
     }
     library_ = dlopen(object.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -332,6 +332,7 @@ void paste_arguments(SceneData& scene)
 void make_texture_arm(SceneData& scene, TextureArm arm)
 {
     if (scene.textures.functions.empty()) return;
+    scene.textures.is_one_text = true;
     if (arm.pastes_arguments) paste_arguments(scene);
     if (!arm.traces_inside) return;
     scene.effects &= ~unsigned(EFFECT_TEXTURE_OCCLUSION);

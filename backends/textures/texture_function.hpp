@@ -84,6 +84,7 @@ struct TextureAov {
 
 struct SceneTextures {
     std::vector<TextureFunction> functions;
+    bool is_one_text = false;  // functions' texts need those before them
     std::vector<TextureNodeValues> nodes;
     std::vector<TextureAttachment> attachments;
     unsigned attributes = 0;    // of all functions

@@ -17,15 +17,20 @@ const std::string place = "#pragma diptych textures\n";
 constexpr unsigned effects_read = EFFECT_INSTANCES | EFFECT_SMOOTH_NORMALS | EFFECT_VERTEX_COLOR |
                                   EFFECT_FLOAT_TEXTURES | EFFECT_ORTHOGRAPHIC;
 
+// What all functions share.
+std::string context_definitions(const SceneData& scene)
+{
+    return "#define TEXTURE_ASKED " + std::to_string(scene.textures.attributes) +
+           "u\n#define TEXTURE_SLOTS " + std::to_string(std::max(1, scene.textures.slots)) + "\n";
+}
+
 std::string definitions(const SceneData& scene)
 {
     std::string text = "#define TEXTURE_FUNCTIONS(X)";
     int number = 0;
     for (const TextureFunction& function : scene.textures.functions)
         text += " X(" + std::to_string(number++) + ", " + function.id + ")";
-    text += "\n#define TEXTURE_ASKED " + std::to_string(scene.textures.attributes) + "u\n";
-    text += "#define TEXTURE_SLOTS " + std::to_string(std::max(1, scene.textures.slots)) + "\n";
-    return text;
+    return text + "\n" + context_definitions(scene);
 }
 
 // The first line of a generated file: which textures it is of, by all that the rest of the stage
@@ -84,13 +89,23 @@ std::string through_folders(const std::string& text, const std::string& name,
 
 }  // namespace
 
-std::string cpp_texture_functions(const SceneData& scene, const GeneratedFolders& folders)
+CppTextures cpp_textures(const SceneData& scene, const GeneratedFolders& folders)
 {
-    std::string text;
-    for (const TextureFunction& function : scene.textures.functions) text += function.cpp + "\n";
-    text += "#line 1 \"texture stage\"\n" + definitions(scene);
-    text += "#define TEXTURE_EFFECTS " + std::to_string(scene.effects & effects_read) + "u\n";
-    return through_folders(text, "functions.hpp", scene, folders);
+    const std::string line = "#line 1 \"texture stage\"\n";
+    const std::string effects =
+        "#define TEXTURE_EFFECTS " + std::to_string(scene.effects & effects_read) + "u\n";
+    CppTextures textures;
+    textures.definitions = line + definitions(scene) + effects;
+    for (const TextureFunction& function : scene.textures.functions)
+        textures.all += function.cpp + "\n";
+    textures.all =
+        through_folders(textures.all + textures.definitions, "functions.hpp", scene, folders);
+    const bool stand_alone = folders.use.empty() && !scene.textures.is_one_text;
+    for (const TextureFunction& function : scene.textures.functions)
+        textures.functions.push_back(stand_alone ? function.cpp + "\n" + line +
+                                                       context_definitions(scene) + effects
+                                                 : textures.all);
+    return textures;
 }
 
 std::string opencl_texture_program(const SceneData& scene, const std::string& stage,

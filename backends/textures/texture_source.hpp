@@ -5,6 +5,7 @@
 #include "backends/scene_data.hpp"
 
 #include <string>
+#include <vector>
 
 namespace diptych {
 
@@ -14,9 +15,15 @@ struct GeneratedFolders {
     std::string use;    // and taken from here, instead of what was generated
 };
 
-// In C++: the functions' texts, one after the other, and the macros. Throws std::runtime_error when
-// a folder cannot be written, or lacks the file, or holds that of other textures.
-std::string cpp_texture_functions(const SceneData& scene, const GeneratedFolders& folders = {});
+struct CppTextures {
+    std::string all;          // the functions' texts, one after the other, and the macros
+    std::string definitions;  // the macros alone
+    std::vector<std::string> functions;  // by function: text and macros that it alone needs
+};
+
+// In C++. Throws std::runtime_error when a folder cannot be written, or lacks the file, or holds
+// that of other textures.
+CppTextures cpp_textures(const SceneData& scene, const GeneratedFolders& folders = {});
 
 // The OpenCL program of the stage. `stage`: its flattened source, with the pragma in it. Throws
 // likewise.
