@@ -42,7 +42,7 @@ typedef int Watcher;  // nobody
 static void texture_see(Watcher watcher, int number, const float* stack, TextureValue given,
                         const TextureContext* tx)
 {
-    const int verdict = texture_verdict(tx, given);
+    const int verdict = texture_verdict(texture_faults_on_the_way(tx), given);
     if (verdict != 0) texture_count(tx->paths, tx->path, verdict);
 }
 

@@ -53,13 +53,35 @@ SHARED void fill_lane(const Scene* scene, const Paths* paths, Lanes& lanes, int 
 {
     LOCAL_SCENE
 #pragma omp simd
-    for (int k = 0; k < count; ++k) fill_lane(&scene, &paths, lanes, k);
+    for (int k = 0; k < whole_vectors(count); ++k) fill_lane(&scene, &paths, lanes, k);
+}
+
+SHARED void judge_lane(Lanes& lanes, int k)
+{
+    const TextureValue given = {lanes.value[0][k], lanes.value[1][k], lanes.value[2][k],
+                                lanes.value[3][k]};
+    lanes.verdict[k] = texture_verdict(lanes.verdict[k], given);
+    const TextureValue value = texture_finite(given);
+    lanes.value[0][k] = value.r;
+    lanes.value[1][k] = value.g;
+    lanes.value[2][k] = value.b;
+    lanes.value[3][k] = value.a;
+}
+
+// A loop of its own: g++ would draw the question whether a clamped result is finite into the clamp,
+// as a choice between truths, for which it knows no vector instruction.
+int judge(Lanes& lanes, int count)
+{
+    int any = 0;
+#pragma omp simd
+    for (int k = 0; k < whole_vectors(count); ++k) judge_lane(lanes, k);
+    for (int k = 0; k < count; ++k) any |= lanes.verdict[k];
+    return any;
 }
 
 void keep(const Paths& paths, Lanes& lanes, int count, const TextureStep& step)
 {
-    int any = 0;
-    for (int k = 0; k < count; ++k) any |= lanes.verdict[k];
+    const int any = judge(lanes, count);
     for (int k = 0; any != 0 && k < count; ++k)
         if (lanes.verdict[k] != 0) texture_count(&paths, lanes.path[k], lanes.verdict[k]);
     for (int c = 0; c < 4 && step.slot >= 0; ++c)
@@ -79,6 +101,10 @@ void keep(const Paths& paths, Lanes& lanes, int count, const TextureStep& step)
 template<bool is_uniform>
 void run_steps(const Evaluated& all, Lanes& lanes, int count, const TextureProgram& program)
 {
+    for (int k = count; k < whole_vectors(count); ++k) {
+        lanes.path[k] = lanes.path[count - 1];
+        lanes.first_step[k] = lanes.first_step[count - 1];
+    }
     fill(all.scene, all.paths, lanes, count);
     for (int k = 0; k < program.steps; ++k) {
         const TextureStep step = texture_step(&all.scene, program.first, k);

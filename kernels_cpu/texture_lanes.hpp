@@ -13,6 +13,10 @@
 
 constexpr int lane_count = 128;  // as many as keep their state in the first-level cache
 
+// Loops run over whole vectors, so that compilers make no second and third loop for the rest: the
+// lanes behind the last path are those of that path again.
+constexpr int whole_vectors(int count) { return (count + 15) & ~15; }
+
 #define LANE_float(field) float field[1][lane_count];
 #define LANE_float2(field) float field[2][lane_count];
 #define LANE_float3(field) float field[3][lane_count];
@@ -23,8 +27,8 @@ constexpr int lane_count = 128;  // as many as keep their state in the first-lev
 struct Lanes {
     int path[lane_count];
     int first_step[lane_count];  // word of the first step of the path's program
-    float value[4][lane_count];
-    int verdict[lane_count];  // texture_verdict of the step
+    float value[4][lane_count];  // that the step gave
+    int verdict[lane_count];     // texture_faults_on_the_way, then texture_verdict
     float stack[4 * TEXTURE_SLOTS][lane_count];
     TEXTURE_ATTRIBUTES(LANE_FIELD)
 };

@@ -68,12 +68,11 @@ SHARED void run_lane(const Scene* scene, const Paths* paths, Lanes& lanes, int k
     texture_begin(&tx, step);
     const int own = int(material_word(scene, lanes.first_step[k] + offset));
     const auto given = CALL_ENTRY(TEXTURE_ID, &tx, IS_UNIFORM ? step.region : own);
-    lanes.verdict[k] = texture_verdict(&tx, VALUE_OF(given));
-    const TextureValue value = texture_finite(VALUE_OF(given));
-    lanes.value[0][k] = value.r;
-    lanes.value[1][k] = value.g;
-    lanes.value[2][k] = value.b;
-    lanes.value[3][k] = value.a;
+    lanes.verdict[k] = texture_faults_on_the_way(&tx);
+    lanes.value[0][k] = given.x;
+    lanes.value[1][k] = given.y;
+    lanes.value[2][k] = given.z;
+    lanes.value[3][k] = given.w;
 }
 
 [[gnu::noinline]] void run_lanes(const Scene& scene_in, const Paths& paths_in, Lanes& lanes,
@@ -82,7 +81,7 @@ SHARED void run_lane(const Scene* scene, const Paths* paths, Lanes& lanes, int k
     LOCAL_SCENE
     const int offset = step_number * TEXTURE_STEP_WORDS + 1;
 #pragma omp simd
-    for (int k = 0; k < count; ++k) run_lane(&scene, &paths, lanes, k, step, offset);
+    for (int k = 0; k < whole_vectors(count); ++k) run_lane(&scene, &paths, lanes, k, step, offset);
 }
 
 }  // namespace

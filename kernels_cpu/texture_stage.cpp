@@ -39,7 +39,7 @@ void texture_see(const Watcher& watcher, int number, const float* stack, const T
                  const TextureContext* tx)
 {
     if (!watcher.watch) {
-        const int verdict = texture_verdict(tx, v);
+        const int verdict = texture_verdict(texture_faults_on_the_way(tx), v);
         if (verdict != 0) texture_count(tx->paths, tx->path, verdict);
         return;
     }

@@ -244,11 +244,17 @@ SHARED TextureValue texture_finite(TextureValue v)
     return v;
 }
 
-// What was wrong with an evaluation that gave v, in one word; 0: nothing.
-SHARED int texture_verdict(const TextureContext* tx, TextureValue v)
+// What was wrong with an evaluation, its value apart, in one word; 0: nothing.
+SHARED int texture_faults_on_the_way(const TextureContext* tx)
 {
     const int clamped = tx->clamped < TEXTURE_MOST_CLAMPED ? tx->clamped : TEXTURE_MOST_CLAMPED;
-    return (texture_is_finite(v) ? 0 : 1) | (tx->fault_line != 0 ? 2 : 0) | clamped << 2;
+    return (tx->fault_line != 0 ? 2 : 0) | clamped << 2;
+}
+
+// The same with the value v that it gave.
+SHARED int texture_verdict(int on_the_way, TextureValue v)
+{
+    return (texture_is_finite(v) ? 0 : 1) | on_the_way;
 }
 
 // Counts what was wrong for the pixel of path i. Sums of integers are the same in any order. What
