@@ -124,8 +124,13 @@ SHARED void evaluate_surface(const Scene* scene, const Paths* paths, int i)
     }
     normal = select3(is_front, normal, -normal);
     const float3 face_normal = select3(is_front, outside, -outside);
-    if (uses(scene, EFFECT_SMOOTH_NORMALS | EFFECT_NORMAL_MAP))
-        normal = normal_mirroring(normal_facing(normal, view), face_normal, view);
+    if (uses(scene, EFFECT_SMOOTH_NORMALS | EFFECT_NORMAL_MAP)) {
+        // what is flat stays so to the bit, as in scenes that have no other normals
+        const int is_flat =
+            (normal.x == face_normal.x) & (normal.y == face_normal.y) & (normal.z == face_normal.z);
+        const float3 bent = normal_mirroring(normal_facing(normal, view), face_normal, view);
+        normal = select3(is_flat, face_normal, bent);
+    }
 
     const float4 base_texel =
         surface_slot(scene, paths, i, weights, scene->materials[material].base_slot, SLOT_BASE,
