@@ -24,16 +24,17 @@ constexpr unsigned needs_of[] = {
 #undef STAGE_NEEDS
 };
 
-// Sums of the dispatch's pixels, the work of compact and accumulate. Pixels with a path that parted
-// are left out.
+// Sums of the dispatch's pixels, the work of compact, accumulate and accumulate_aovs. Pixels with a
+// path that parted are left out.
 void compare_results(const Results& a, const Results& b, const Dispatch& dispatch,
-                     const TraceComparison& traces, const Bound& bound, StageTally& tally)
+                     const TraceComparison& traces, const Bound& bound,
+                     std::array<StageTally, STAGE_COUNT>& tallies)
 {
     std::vector<char> has_parted(size_t(dispatch.results()), 0);
     for (int p = 0; p < dispatch.paths(); ++p)
         if (traces.has_parted[size_t(p)]) has_parted[size_t(result_of_path(dispatch, p))] = 1;
     std::vector<char> is_off(has_parted.size(), 0);
-    const auto compare = [&](const auto& x, const auto& y) {
+    const auto compare = [&](const auto& x, const auto& y, StageTally& tally) {
         for (size_t k = 0; k < x.size(); ++k) {
             const size_t r = k % has_parted.size();
             if (has_parted[r]) continue;
@@ -45,12 +46,20 @@ void compare_results(const Results& a, const Results& b, const Dispatch& dispatc
             if (ulps > bound.ulps && !(std::abs(u - v) <= bound.relative * scale)) is_off[r] = 1;
         }
     };
-#define COMPARE_RESULT(type, name) compare(a.name, b.name);
+    const auto count = [&](StageTally& tally) {
+        tally.paths += dispatch.results();
+        tally.parted += int(std::count(is_off.begin(), is_off.end(), 1));
+        std::ranges::fill(is_off, 0);
+    };
+    if (!a.sum_aov.empty()) {
+        compare(a.sum_aov, b.sum_aov, tallies[STAGE_accumulate_aovs]);
+        count(tallies[STAGE_accumulate_aovs]);
+    }
+#define COMPARE_RESULT(type, name) compare(a.name, b.name, tallies[STAGE_accumulate]);
     RESULT_BUFFERS(COMPARE_RESULT)
-    TEXTURE_RESULT_BUFFERS(COMPARE_RESULT)
 #undef COMPARE_RESULT
-    tally.paths += dispatch.results();
-    tally.parted += int(std::count(is_off.begin(), is_off.end(), 1));
+    compare(a.texture_faults, b.texture_faults, tallies[STAGE_accumulate]);
+    count(tallies[STAGE_accumulate]);
 }
 
 std::string text_of(const SelftestScene& scene, const Dispatch& dispatch, const Divergence& first)
@@ -124,14 +133,14 @@ SelftestResult run_selftest(Backend& device, Backend& twin, const Allowance& all
             Results a, b;
             device.render(dispatch, a);
             twin.render(dispatch, b);
-            compare_results(a, b, dispatch, traces, allowance.bound, tallies[STAGE_accumulate]);
+            compare_results(a, b, dispatch, traces, allowance.bound, tallies);
         }
     }
     for (int s = 0; s < STAGE_COUNT; ++s) {
-        if (s == STAGE_compact) continue;  // seen in what accumulate makes of the paths
-        if ((needs_of[s] & (RECORD_EFFECTS | ASIDE_EFFECTS)) != 0) continue;  // by their own tests
+        if (s == STAGE_compact) continue;       // seen in what accumulate makes of the paths
+        if (s == STAGE_decide_alpha) continue;  // seen in where intersect and occlusion end
         const StageTally& tally = tallies[size_t(s)];
-        const bool is_of_textures = s == STAGE_trace_texture_rays || s == STAGE_evaluate_textures;
+        const bool is_of_textures = (needs_of[s] & USER_TEXTURE_EFFECTS) != 0;
         if (is_of_textures && tally.paths == 0) continue;  // twin has no compiler here
         const bool is_ok = tally.paths > 0 && tally.values > 0 &&
                            double(tally.parted) <= allowance.parted_share * double(tally.paths);
@@ -148,7 +157,7 @@ CLI::App* add_selftest_command(CLI::App& app, SelftestCommand& command)
         app.add_subcommand("selftest", "Compare every stage of a device with twin: run this first "
                                        "on a new GPU");
     selftest->footer(
-        "Four built-in scenes that together call for every effect are traced stage by stage on "
+        "Five built-in scenes that together call for every effect are traced stage by stage on "
         "the device\nand as C++ on this processor (twin), from the same sources. A row a stage: "
         "numbers compared, paths that\nentered it, paths that left it with a number beyond what "
         "the device may differ by, and the largest\ndifference in units in the last place. A path "

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 
 namespace diptych {
@@ -228,6 +229,54 @@ SceneData procedural()
     return scene.finish();
 }
 
+// Textures asked away from the place that a path has met, and aside from what surfaces read: they
+// give light, holes, the distance that another's occlusion reaches, and layers of the picture.
+SceneData procedural_aside()
+{
+    SceneBuilder scene;
+    const auto node = [&](const std::string& name, TextureFunction function,
+                          std::map<std::string, TextureInput> inputs = {}) {
+        return scene.add_texture_node({name, scene.add_texture_function(function), inputs});
+    };
+    const int reach =
+        node("reach", texture_of("reach", {}, ATTRIBUTE_WorldPos,
+                                 "    const float3 p = tx_attribute_WorldPos(tx);\n"
+                                 "    const float far = 0.4f + 0.3f * tx_sin_float(7.0f * p.x);\n"
+                                 "    return TX_NEW(float4, far, p.z, 0.0f, 1.0f);\n"));
+    TextureFunction hollows = texture_of("hollows", {{"reach", "float"}}, 0,
+                                         "    const float open = tx_occlusion(tx, 0);\n"
+                                         "    return TX_NEW(float4, open, reach, 0.5f, 1.0f);\n");
+    OcclusionRequest request;
+    request.distance_argument = 0;
+    hollows.occlusion = {request};
+    TextureUse base, holes, glow;
+    base.node = node("hollows", hollows, {{"reach", {.node = reach}}});
+    holes.node = node(
+        "holes", texture_of("holes", {}, ATTRIBUTE_TexCoord0,
+                            "    const float2 uv = tx_attribute_TexCoord0(tx);\n"
+                            "    const float w = tx_sin_float(20.0f * uv.x);\n"
+                            "    return TX_NEW(float4, 0.7f, 0.8f, 0.3f, 0.5f + 0.5f * w);\n"));
+    glow.node =
+        node("glow", texture_of("glow", {}, ATTRIBUTE_LocalPos,
+                                "    const float3 p = tx_attribute_LocalPos(tx);\n"
+                                "    const float w = 0.6f + 0.4f * tx_sin_float(9.0f * p.x);\n"
+                                "    return TX_NEW(float4, w, w * w, 0.5f, 1.0f);\n"));
+    for (const int shown : {base.node, reach}) scene.add_aov(shown);
+    const int floor = scene.add_material({.base_texture = base});
+    const int leaf = scene.add_material({.alpha_mode = ALPHA_MASK, .base_texture = holes});
+    const int veil = scene.add_material({.alpha_mode = ALPHA_BLEND, .base_texture = holes});
+    const int lamp = scene.add_material({.emission = {7, 6, 5}, .emission_texture = glow});
+    scene.set_textures({.occlusion_rays = 4});
+    scene.place(scene.add_mesh(quad_mesh({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, floor)));
+    scene.place(scene.add_mesh(box_mesh({0.2, 0, -0.8}, {0.9, 0.7, -0.2}, floor)));
+    scene.place(scene.add_mesh(quad_mesh({-1.2, 0.1, 0.2}, {1.3, 0, 0.3}, {0, 1.1, 0}, leaf)));
+    scene.place(scene.add_mesh(quad_mesh({0.3, 0.1, 0.7}, {0.9, 0, -0.2}, {0, 1, 0}, veil)));
+    scene.place(scene.add_mesh(quad_mesh({-0.6, 2, -0.5}, {1.2, 0, 0}, {0, 0, 1}, lamp)));
+    scene.set_camera({.eye = {0.5, 1.4, 3}, .target = {0, 0.4, 0}});
+    scene.set_picture_size(picture_size, picture_size);
+    return scene.finish();
+}
+
 }  // namespace
 
 std::vector<SelftestScene> selftest_scenes()
@@ -237,6 +286,7 @@ std::vector<SelftestScene> selftest_scenes()
     scenes.push_back({"matte room, orthographic", matte_room()});
     scenes.push_back({"balls under a sky", row_of_balls()});
     scenes.push_back({"procedural textures", procedural()});
+    scenes.push_back({"textures asked aside", procedural_aside()});
     return scenes;
 }
 
