@@ -5,6 +5,10 @@
 #include "host/scene/texture_arguments.hpp"
 #include "host/scene/uri.hpp"
 
+#include "platform.h"
+
+#include "common/textures/procedural.h"
+
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
@@ -79,6 +83,32 @@ uint word_at(const SceneData& scene, size_t word)
     uint value = 0;
     std::memcpy(&value, reinterpret_cast<const char*>(scene.materials.data()) + 4 * word, 4);
     return value;
+}
+
+// Regions of the nodes that paint emitters: the power of these was estimated from what they gave.
+std::set<int> regions_that_shine(const SceneData& scene)
+{
+    std::set<int> regions;
+    for (size_t m = 0; m < size_t(scene.textures.first_page); ++m) {
+        const size_t program = size_t(scene.materials[m].texture_program[PROGRAM_EMISSION]);
+        if (program == 0) continue;
+        for (size_t k = 0; k < word_at(scene, program); ++k)
+            regions.insert(
+                int(word_at(scene, program + TEXTURE_PROGRAM_WORDS + k * TEXTURE_STEP_WORDS + 1)));
+    }
+    return regions;
+}
+
+// Whether one of the attachments that `is_meant` picks paints emitters.
+template<class IsMeant>
+bool shines(const SceneData& scene, IsMeant is_meant)
+{
+    if ((scene.effects & EFFECT_PROCEDURAL_EMISSION) == 0) return false;
+    const std::set<int> regions = regions_that_shine(scene);
+    return std::ranges::any_of(
+        scene.textures.attachments, [&](const TextureAttachment& attachment) {
+            return is_meant(attachment) && regions.contains(attachment.first_word);
+        });
 }
 
 void set_word(SceneData& scene, size_t word, uint value)
@@ -208,6 +238,11 @@ bool LiveScene::translate_again(const std::vector<fs::path>& changed, Edit& edit
             return false;
         }
         const bool is_other = fresh.cpp != function.cpp || fresh.opencl != function.opencl;
+        const int number = int(&function - data_->textures.functions.data());
+        if (is_other && shines(*data_, [&](const auto& a) { return a.function == number; })) {
+            reason = file.filename().string() + " paints light, whose share is estimated anew";
+            return false;
+        }
         if (is_other) {
             edit.kind = EditKind::textures;
             edit.what = file.filename().string();
@@ -279,6 +314,11 @@ bool LiveScene::write_value(size_t k, const std::string& name, const json& value
     reason = fmt::format("{}.{} changes more than numbers", node.name, printable(name));
     const std::optional<std::vector<double>> numbers = constant_numbers(value, where);
     if (!numbers) return false;
+    if (shines(*data_, [&](const auto& a) { return a.node_id == int(k); })) {
+        reason = fmt::format("{}.{} paints light, whose share is estimated anew", node.name,
+                             printable(name));
+        return false;
+    }
     check_argument({.name = node.name}, function, name, {.numbers = *numbers});
     const auto at = std::ranges::find(function.arguments, name, &TextureArgument::name);
     const std::vector<uint> words = constant_words(*at, *numbers);

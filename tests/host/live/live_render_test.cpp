@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <deque>
 
@@ -223,6 +224,29 @@ TEST_P(LiveScenes, MoreThanArgumentsLoadsTheSceneAgain)
     EXPECT_TRUE(is_told) << testing::PrintToString(told_);
     const std::vector<fs::path> files = {folder_ / "paint.c", folder_ / "scene.gltf"};
     EXPECT_EQ(watched_, files);
+}
+
+// Two squares in a corner shine on each other: how light sampling divides itself between them
+// follows what the texture gives.
+TEST_P(LiveScenes, APaintedLightKeepsItsShareUpToDate)
+{
+    edit_scene([](auto& d) {
+        d["materials"][0]["emissiveFactor"] = d["materials"][1]["emissiveFactor"] = {1, 1, 1};
+        d["materials"][0]["extensions"]["DIPTYCH_procedural_texture"]["emissiveTexture"] = {
+            {"node", "paint"}};
+        d["nodes"][1]["rotation"] = {0, std::sqrt(0.5), 0, std::sqrt(0.5)};
+        d["nodes"][1]["translation"] = {0, 0, 2};
+    });
+    run({{.typed = {"paint.tint=[9, 8, 7]"}},
+         {.typed = {"left.scale=3"}},
+         {.saved = {"paint.c"}, .before = [&] { edit_texture("wave * wave, p.y", "6.0f, p.x"); }}});
+    ASSERT_EQ(pictures_.size(), 4u) << testing::PrintToString(warned_);
+    EXPECT_NE(told_[0].find("paint.tint paints light"), std::string::npos) << told_[0];
+    EXPECT_NE(told_[1].find("left.scale=3: nothing to compile"), std::string::npos) << told_[1];
+    EXPECT_NE(told_[2].find("paint.c paints light"), std::string::npos) << told_[2];
+    EXPECT_NE(pictures_[1], pictures_[0]);
+    EXPECT_NE(pictures_[3], pictures_[2]);
+    EXPECT_EQ(pictures_[3], fresh({"paint.tint=[9, 8, 7]", "left.scale=3"}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, LiveScenes, testing::Values("cpu", "twin", "double", "opencl"),
