@@ -21,18 +21,19 @@ using namespace texture_tool;
 const char* const usage =
     "usage: diptych-texture FILE.c [--entry NAME] [--id ID] [--name PRINTED_NAME]\n"
     "                       [--opencl OUT.cl] [--cpp OUT.hpp] [--json OUT.json] [--check-only] "
-    "[--watch]\n"
+    "[--watch values|indexes]\n"
     "Checks a texture and writes it as OpenCL C, as C++ and described in JSON.\n"
     "  --entry   the function that is the texture; else the only one that no other calls\n"
     "  --id      prefix and namespace of its names, a C identifier (texture)\n"
     "  --name    the file's name in messages and for debuggers (FILE.c)\n"
-    "  --watch   the C++ notes in fault_line where a value first is not finite\n"
+    "  --watch   the C++ notes in fault_line where a value first is not finite, or an index out of "
+    "range\n"
     "OUT may be - for standard output. Exit code 0: good; 2: refused, with lines\n"
     "file:line:column: error: reason; remedy on standard error.\n";
 
 struct Options {
     std::string file, entry, id = "texture", name, opencl, cpp, json;
-    bool is_watched = false;
+    Variant cpp_variant = Variant::Cpp;
     bool wants_help = false;
     bool wants_version = false;
 };
@@ -43,6 +44,13 @@ bool is_identifier(const std::string& text)
     return !text.empty() && text.size() <= 64 && is_letter(text[0]) &&
            std::all_of(text.begin(), text.end(),
                        [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+Variant watched_variant(const std::string& what)
+{
+    if (what == "values") return Variant::WatchedValues;
+    if (what == "indexes") return Variant::WatchedIndexes;
+    throw std::runtime_error("--watch " + what + ": is neither values nor indexes");
 }
 
 Options parse(int count, char** values)
@@ -67,7 +75,7 @@ Options parse(int count, char** values)
         else if (word == "--json")
             options.json = value();
         else if (word == "--watch")
-            options.is_watched = true;
+            options.cpp_variant = watched_variant(value());
         else if (word == "--check-only")
             continue;
         else if (word == "--version")
@@ -126,8 +134,7 @@ int run(const Options& options)
         std::cerr << message(description, problem) << "\n";
     if (has_errors(description)) return 2;
     const Rewritten opencl = rewrite(description, Variant::OpenCl, options.id);
-    const Rewritten cpp =
-        rewrite(description, options.is_watched ? Variant::WatchedCpp : Variant::Cpp, options.id);
+    const Rewritten cpp = rewrite(description, options.cpp_variant, options.id);
     write(options.opencl, opencl.text);
     write(options.cpp, cpp.text);
     write(options.json,

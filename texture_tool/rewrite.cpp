@@ -1,6 +1,7 @@
 #include "texture_tool/rewrite.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "texture_tool/language.hpp"
@@ -28,12 +29,32 @@ const char* const watch_text =
     "    return v;\n"
     "}\n";
 
+// Likewise, of an index that is out of range. An array's own access counts those.
+const char* const watch_index_text =
+    "inline void tx_note_index(TextureContext* tx, int line, int clamped_before)\n"
+    "{\n"
+    "    if (clamped_before == 0 && tx->clamped != 0) tx->fault_line = line;\n"
+    "}\n"
+    "inline int tx_watched_index(TextureContext* tx, int line, int i, int n)\n"
+    "{\n"
+    "    const int before = tx->clamped, inside = tx_index(tx, i, n);\n"
+    "    tx_note_index(tx, line, before);\n"
+    "    return inside;\n"
+    "}\n"
+    "template<typename At, typename View>\n"
+    "auto tx_watched_at(TextureContext* tx, int line, At at, View v, int i)\n"
+    "{\n"
+    "    const int before = tx->clamped;\n"
+    "    const auto element = at(tx, v, i);\n"
+    "    tx_note_index(tx, line, before);\n"
+    "    return element;\n"
+    "}\n";
+
 class Rewriter {
 public:
     Rewriter(const Description& description, Variant variant, const std::string& id)
-        : description_(description), is_cpp_(variant != Variant::OpenCl),
-          is_watched_(variant == Variant::WatchedCpp), id_(id), text_(description),
-          hoisted_(description.functions.size())
+        : description_(description), is_cpp_(variant != Variant::OpenCl), variant_(variant),
+          id_(id), text_(description), hoisted_(description.functions.size())
     {
     }
 
@@ -49,7 +70,8 @@ public:
                 text_.remove(function.range);
         Rewritten result;
         if (is_cpp_) result.text = "namespace " + id_ + " {\n";
-        if (is_watched_) result.text += watch_text;
+        if (variant_ == Variant::WatchedValues) result.text += watch_text;
+        if (variant_ == Variant::WatchedIndexes) result.text += watch_index_text;
         result.text +=
             with_line_marks(text_.file()) + "\n#line 1 \"<generated for " + id_ + ">\"\n" + entry();
         if (is_cpp_) result.text += "}  // namespace " + id_ + "\n";
@@ -105,12 +127,11 @@ private:
         case SiteKind::Index:
             return index(site);
         case SiteKind::ViewIndex:
-            text_.before(site.range.first,
-                         "tx_at_" + site.text + "(" + std::string(context) + ", ");
+            text_.before(site.range.first, element_of(site));
             text_.replace(site.token, ", ");
             return text_.replace(site.token2, ")");
         case SiteKind::ViewFirst:
-            text_.replace(site.token, "tx_at_" + site.text + "(" + std::string(context) + ", ");
+            text_.replace(site.token, element_of(site));
             return text_.after(site.range.last, ", 0)");
         case SiteKind::Convert:
             return convert(site);
@@ -134,7 +155,7 @@ private:
         case SiteKind::FloatLiteral:
             return float_literal(site);
         case SiteKind::Watch:
-            if (!is_watched_) return;
+            if (variant_ != Variant::WatchedValues) return;
             text_.before(site.range.first, "tx_watch(" + std::string(context) + ", " +
                                                std::to_string(site.number) + ", (");
             return text_.after(site.range.last, "))");
@@ -255,6 +276,23 @@ private:
         text_.replace(site.range.first, assigned);
     }
 
+    // Where an access of the user's own is to be noted.
+    std::optional<std::string> watched_line(const Site& site) const
+    {
+        const int line = description_.tokens[site.token].line;
+        if (variant_ != Variant::WatchedIndexes || description_.is_library(line)) return {};
+        return std::to_string(description_.place(line).line);
+    }
+
+    // The call that gives an array's element, as far as the array.
+    std::string element_of(const Site& site) const
+    {
+        const std::string at = "tx_at_" + site.text, tx = context;
+        const std::optional<std::string> line = watched_line(site);
+        return line ? "tx_watched_at(" + tx + ", " + *line + ", " + at + ", "
+                    : at + "(" + tx + ", ";
+    }
+
     void index(const Site& site)
     {
         if (!site.text.empty()) {
@@ -263,7 +301,9 @@ private:
             text_.remove(site.range);
             text_.replace(site.range.first, "((" + site.text + "*)&" + base + ")");
         }
-        text_.after(site.token, "tx_index(" + std::string(context) + ", ");
+        const std::optional<std::string> line = watched_line(site);
+        text_.after(site.token, (line ? "tx_watched_index(" : "tx_index(") + std::string(context) +
+                                    ", " + (line ? *line + ", " : ""));
         text_.before(site.token2, ", " + std::to_string(site.number) + ")");
     }
 
@@ -440,7 +480,7 @@ private:
 
     const Description& description_;
     bool is_cpp_;
-    bool is_watched_;
+    Variant variant_;
     std::string id_;
     TokenText text_;
     std::vector<std::string> hoisted_;

@@ -8,8 +8,9 @@
 
 namespace texture_tool {
 
-// WatchedCpp: C++ that also notes in fault_line where a value first was not finite.
-enum class Variant { OpenCl, Cpp, WatchedCpp };
+// The watched ones: C++ that also notes in fault_line where a value first was not finite, or an
+// index out of range.
+enum class Variant { OpenCl, Cpp, WatchedValues, WatchedIndexes };
 
 struct Rewritten {
     std::string text;

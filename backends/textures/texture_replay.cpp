@@ -52,12 +52,13 @@ std::vector<double> argument_of(const SceneData& scene, const TextureArgument& a
 }
 
 // The functions' text with notes in it; as it was, where the file is not there any more.
-std::vector<TextureFunction> watched(std::vector<TextureFunction> functions)
+std::vector<TextureFunction> watched(std::vector<TextureFunction> functions,
+                                     const std::string& what)
 {
     for (TextureFunction& function : functions) {
         try {
             function.cpp =
-                translate_texture({function.file, function.file, function.entry, function.id, true})
+                translate_texture({function.file, function.file, function.entry, function.id, what})
                     .cpp;
         } catch (const std::runtime_error&) {
             continue;
@@ -71,13 +72,15 @@ std::unique_ptr<NativeStage> stage_of(SceneData& scene, bool is_double, TextureR
     NativeStageOptions options;
     options.kind = is_double ? NativeStageKind::reference : NativeStageKind::scalar;
     options.is_debug = build == TextureReplay::Build::debug;
-    if (build != TextureReplay::Build::watched)
+    const bool has_values = build == TextureReplay::Build::watched_values;
+    if (!has_values && build != TextureReplay::Build::watched_indexes)
         return std::make_unique<NativeStage>(scene, options);
     struct Exchanged {  // for as long as the stage is made
         std::vector<TextureFunction>& functions;
         std::vector<TextureFunction> own;
         ~Exchanged() { functions.swap(own); }
-    } exchanged{scene.textures.functions, watched(scene.textures.functions)};
+    } exchanged{scene.textures.functions,
+                watched(scene.textures.functions, has_values ? "values" : "indexes")};
     exchanged.functions.swap(exchanged.own);
     return std::make_unique<NativeStage>(scene, options);
 }

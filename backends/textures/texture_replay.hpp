@@ -44,8 +44,9 @@ class TextureReplay {
 public:
     enum class Build {
         plain,
-        debug,    // for a debugger
-        watched,  // fault_line is where a value first was not finite, in files that can be read
+        debug,            // for a debugger
+        watched_values,   // fault_line is where one first was not finite, in files that can be read
+        watched_indexes,  // or where one was out of range
     };
     // is_double: in double precision. Completes the scene, which must outlive this, with its tree
     // where textures ask for occlusion.

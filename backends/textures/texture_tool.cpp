@@ -57,7 +57,7 @@ std::string translated(const std::string& program, const TextureSource& source)
         program,  source.file.string(), "--id",     source.id,
         "--name", source.name,          "--opencl", folder / "out.cl",
         "--cpp",  folder / "out.hpp",   "--json",   folder / "out.json"};
-    if (source.is_watched) command.push_back("--watch");
+    if (!source.watched.empty()) command.insert(command.end(), {"--watch", source.watched});
     if (!source.entry.empty()) command.insert(command.end(), {"--entry", source.entry});
     const Finished done = run_program(command);
     if (done.exit_code != 0) {
@@ -81,8 +81,7 @@ std::string key_of(const std::string& program, const TextureSource& source)
     for (const std::string& part :
          {program, std::to_string(fs::file_size(program, error)),
           std::to_string(fs::last_write_time(program, error).time_since_epoch().count()),
-          text_of(source.file), source.name, source.entry, source.id,
-          std::string(source.is_watched ? "watched" : "")}) {
+          text_of(source.file), source.name, source.entry, source.id, source.watched}) {
         hash.add(std::to_string(part.size()) + ":");
         hash.add(part);
     }

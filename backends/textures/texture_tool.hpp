@@ -10,10 +10,12 @@ namespace diptych {
 
 struct TextureSource {
     std::filesystem::path file;
-    std::string name;         // of the file, in messages and for debuggers
-    std::string entry;        // empty: the only function that no other calls
-    std::string id;           // in generated code
-    bool is_watched = false;  // the C++ notes in fault_line where a value first is not finite
+    std::string name;   // of the file, in messages and for debuggers
+    std::string entry;  // empty: the only function that no other calls
+    std::string id;     // in generated code
+    // "values": the C++ notes in fault_line where one first is not finite; "indexes": where one is
+    // out of range
+    std::string watched = {};
 };
 
 // Throws std::runtime_error with the tool's messages (file:line:column: error: reason; remedy), or

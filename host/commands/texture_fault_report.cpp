@@ -16,6 +16,10 @@ namespace {
 using nlohmann::json;
 
 constexpr size_t most_numbers = 16;  // of an array, printed
+// By kind; the line of a loop is there in any case.
+constexpr TextureReplay::Build build_for[] = {TextureReplay::Build::watched_values,
+                                              TextureReplay::Build::plain,
+                                              TextureReplay::Build::watched_indexes};
 constexpr const char* kind_names[] = {"not_finite", "budget", "index"};
 
 bool has_fault(const TextureStepValue& step, int kind)
@@ -26,7 +30,7 @@ bool has_fault(const TextureStepValue& step, int kind)
 }
 
 TextureFaultPlace place_of(const SceneData& scene, const TextureHit& hit,
-                           const TextureStepValue& step, int kind)
+                           const TextureStepValue& step)
 {
     const TextureAttachment& attachment = scene.textures.attachments.at(size_t(step.attachment));
     const TextureFunction& function = scene.textures.functions.at(size_t(attachment.function));
@@ -43,7 +47,7 @@ TextureFaultPlace place_of(const SceneData& scene, const TextureHit& hit,
                             step.clamped};
     const json about = json::parse(function.description, nullptr, false);
     place.line = about.is_object() ? about.value("line", 0) : 0;
-    if (kind != TEXTURE_FAULT_INDEX && step.fault_line != 0) place.line = step.fault_line;
+    if (step.fault_line != 0) place.line = step.fault_line;
     place.arguments = arguments_text(function, step);
     return place;
 }
@@ -68,7 +72,7 @@ std::optional<TextureFaultPlace> find_first(Backend& backend, SceneData& scene,
                 const std::vector<TextureStepValue> steps = replay.run(hit, lookup);
                 const auto at = std::ranges::find_if(
                     steps, [&](const TextureStepValue& step) { return has_fault(step, kind); });
-                if (at != steps.end()) first = place_of(scene, hit, *at, kind);
+                if (at != steps.end()) first = place_of(scene, hit, *at);
             }
     });
     return first;
@@ -105,9 +109,7 @@ TextureFaultReport find_texture_faults(Backend& backend, const std::string& name
         const TextureFault& fault = faults.of_kind[size_t(kind)];
         if (fault.count == 0) continue;
         try {
-            TextureReplay replay(scene, name == "double",
-                                 kind == TEXTURE_FAULT_NOT_FINITE ? TextureReplay::Build::watched
-                                                                  : TextureReplay::Build::plain);
+            TextureReplay replay(scene, name == "double", build_for[kind]);
             report.first[size_t(kind)] = find_first(backend, scene, replay, fault, kind);
         } catch (const std::runtime_error& error) {  // no compiler: counts and pixels are known
             fmt::print(stderr, "notice: {}\n", error.what());

@@ -48,9 +48,18 @@ const Planted plants[] = {
      "float planted(int k, const float* table)\n{\n    return table[k] + table[1];\n}\n",
      {{"k", 7}, {"table", {0.25, 0.5, 0.125}}},
      "index",
-     1,
+     3,
      "planted(k = 7, table = (0.25, 0.5, 0.125)) gave (0.625, 0.625, 0.625, 1), 1 in this "
      "evaluation"},
+    {"index_of_a_local_array",
+     "float second(const float* of, int k)\n{\n    return of[k];\n}\n\n"
+     "float planted(int k)\n{\n    float own[2] = {0.5f, 0.25f};\n"
+     "    const float inside = own[1] + second(own, 0);\n    own[0] = inside;\n"
+     "    own[k] = 0.125f;\n    return own[0] + own[1] + second(own, k);\n}\n",
+     {{"k", -3}},
+     "index",
+     11,
+     "planted.c:11: planted(k = -3) gave (0.5, 0.5, 0.5, 1), 2 in this evaluation"},
     {"endless_loop",
      "float planted(float keep)\n{\n    float x = 0.5f;\n\n    while (x < 2.0f) x *= keep;\n"
      "    return x;\n}\n",
