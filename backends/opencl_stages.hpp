@@ -5,6 +5,7 @@
 #include "backends/opencl_memory.hpp"
 #include "backends/opencl_programs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
