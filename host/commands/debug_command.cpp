@@ -169,7 +169,7 @@ void write_launch_file(const json& configuration)
     all.erase(std::remove_if(all.begin(), all.end(),
                              [&](const json& other) {
                                  return other.is_object() &&
-                                        other.value("name", "") == configuration["name"];
+                                        other.value("name", "") == configuration.value("name", "");
                              }),
               all.end());
     all.push_back(configuration);
