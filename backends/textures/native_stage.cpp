@@ -90,6 +90,13 @@ void add_flags_of_gcc(const std::string& program, std::vector<std::string>& flag
         flags.insert(flags.end(), own.begin(), own.end());
 }
 
+// A host that runs under the address sanitizer has users' code watched too.
+#if defined(__SANITIZE_ADDRESS__)
+const std::vector<std::string> sanitizer = {"-fsanitize=address", "-fno-omit-frame-pointer"};
+#else
+const std::vector<std::string> sanitizer = {};
+#endif
+
 bool is_in_lanes(const NativeStageOptions& options)
 {
     return options.kind == NativeStageKind::vector && !options.is_debug;
@@ -112,6 +119,7 @@ std::vector<std::string> flags_for(const NativeStageOptions& options)
                                       "-fno-strict-aliasing",
                                       "-fopenmp-simd",
                                       std::string("-DDIALECT_") + (is_double ? "double" : "float")};
+    flags.insert(flags.end(), sanitizer.begin(), sanitizer.end());
     if (options.kind == NativeStageKind::silent) {
         flags.insert(flags.end(), {"-O1", "-DALWAYS_INLINE="});
         return flags;
@@ -278,6 +286,7 @@ void compile_lanes(const std::string& program, const std::vector<Source>& source
         objects[k] = made.string();
     });
     std::vector<std::string> command = {program, "-shared"};
+    command.insert(command.end(), sanitizer.begin(), sanitizer.end());
     command.insert(command.end(), objects.begin(), objects.end());
     make(command, object, object.parent_path() / "functions.hpp");
 }
