@@ -81,13 +81,15 @@ std::string processor()
 }
 
 // What g++ alone needs: its jump threading takes loops apart that it would else have put into lanes
-// (fbm, worley), and combining more than two instructions is half of its work on large loops
-// (marble), which run no faster for it.
+// (fbm, worley), combining more than two instructions is half of its work on large loops (marble),
+// which run no faster for it, and on some processors it shuns gathers: see
+// kernels_cpu/CMakeLists.txt.
 void add_flags_of_gcc(const std::string& program, std::vector<std::string>& flags)
 {
-    const std::vector<std::string> own = {"-fno-thread-jumps", "--param=max-combine-insns=2"};
-    if (run_program({program, own[0], own[1], "-E", "-x", "c", "/dev/null"}).exit_code == 0)
-        flags.insert(flags.end(), own.begin(), own.end());
+    for (const std::string flag :
+         {"-fno-thread-jumps", "--param=max-combine-insns=2", "-mtune-ctrl=use_gather"})
+        if (run_program({program, flag, "-E", "-x", "c", "/dev/null"}).exit_code == 0)
+            flags.push_back(flag);
 }
 
 // A host that runs under the address sanitizer has users' code watched too.
