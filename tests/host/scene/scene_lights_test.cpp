@@ -133,6 +133,22 @@ TEST(Lights, Textured_emission_counts_with_its_mean)
     EXPECT_FLOAT_EQ(data.materials[0].emission.w, 1) << "one square metre, the only light";
 }
 
+// A square metre on the ground, of which a spot gives the only light.
+TEST(Lights, Scenes_that_they_leave_black_are_noticed)
+{
+    for (const float radiance : {1.0f, 1e-4f}) {
+        SceneBuilder scene;
+        const int ground = scene.add_material({});
+        const int lamp = scene.add_material({.emission = {radiance, radiance, radiance}});
+        scene.place(scene.add_mesh(quad_mesh({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, ground)));
+        scene.place(scene.add_mesh(quad_mesh({0.5, 0.1, 0.5}, {0.3, 0, 0}, {0, 0, 0.3}, lamp)));
+        const SceneData data = scene.finish();
+        const bool is_noticed =
+            !data.notices.empty() && data.notices.back().find("nearly black") != std::string::npos;
+        EXPECT_EQ(is_noticed, radiance < 0.01f) << radiance;
+    }
+}
+
 TEST(Lights, Unlit_surfaces_are_none)
 {
     SceneBuilder scene;
