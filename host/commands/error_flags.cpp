@@ -105,6 +105,11 @@ std::string ending_text(const RenderResult& result, const RenderOptions& options
         text += fmt::format("; {} of {} blocks are above {:.3g} JND", result.unfinished_blocks,
                             result.blocks, result.target);
     const double bar = options.error > 0 ? options.error : 1;
+    if (summary.share_unknown > 0)
+        text +=
+            fmt::format("\nerror: not known for {:.3g} % of the pixels, which have fewer than {} "
+                        "samples; they count as wrong",
+                        100 * summary.share_unknown, QUANTUM + 1);
     text +=
         fmt::format("\nerror: {}predicted {:.3g} JND (95 % of the blocks are below, at 95 % "
                     "confidence), {:.1f} % of the pixels within {:.3g} JND",

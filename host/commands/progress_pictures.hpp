@@ -28,7 +28,8 @@ private:
     const RenderCommand& command_;
     const RenderOptions& options_;
     const image::WriteOptions& write_;
-    double interval_ = 0;  // seconds between files; 0: none
+    double interval_ = 0;      // seconds between files; 0: none
+    bool has_failed_ = false;  // a file could not be written, and that was said
     std::optional<image::TevClient> viewer_;
     Clock::time_point last_written_ = Clock::now();
     Clock::time_point last_sent_;

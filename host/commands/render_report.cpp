@@ -195,11 +195,14 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
              {"share", double(share.paths) / double(std::max(1ull, statistics.paths))},
              {"dropped", share.is_dropped}});
     if (error)
-        report["error"] = {
-            {"target", result.target},        {"rms", error->rms},
-            {"block_p95", error->block_p95},  {"share_within", error->share_within},
-            {"blocks", result.blocks},        {"unfinished_blocks", result.unfinished_blocks},
-            {"rounds", result.schedule.round}};
+        report["error"] = {{"target", result.target},
+                           {"rms", error->rms},
+                           {"block_p95", error->block_p95},
+                           {"share_within", error->share_within},
+                           {"share_unknown", error->share_unknown},
+                           {"blocks", result.blocks},
+                           {"unfinished_blocks", result.unfinished_blocks},
+                           {"rounds", result.schedule.round}};
     if (audited)
         report["audit"] = {{"blocks", audited->blocks},
                            {"rms", audited->rms},

@@ -62,6 +62,7 @@ public:
 
     float at(int x, int y) const
     {
+        if (!film_.is_error_known(x, y)) return unknown_error;
         const std::array<float, 3> error = film_.standard_error(x, y);
         if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
         const float contrast = contrast_around(area_, x, y, [&](int u, int v) {
@@ -125,6 +126,7 @@ float texture_contrast(const Film& film, int x, int y)
 
 float pixel_error(const Film& film, int x, int y, const Viewer& viewer)
 {
+    if (!film.is_error_known(x, y)) return unknown_error;
     const std::array<float, 3> error = film.standard_error(x, y);
     if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
     return visible_error(film.radiance(x, y), error, texture_contrast(film, x, y), viewer);
@@ -171,6 +173,9 @@ ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const View
     const double pixels = double(film.width()) * film.height();
     summary.rms = std::sqrt(square / pixels);
     summary.share_within = within / pixels;
+    for (int y = 0; y < film.height(); ++y)
+        for (int x = 0; x < film.width(); ++x)
+            summary.share_unknown += film.is_error_known(x, y) ? 0 : 1 / pixels;
     std::vector<BlockError> blocks = block_errors(film, grid, viewer);
     const auto p95 = blocks.begin() + std::ptrdiff_t((blocks.size() - 1) * 95 / 100);
     std::nth_element(blocks.begin(), p95, blocks.end(),

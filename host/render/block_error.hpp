@@ -11,10 +11,14 @@ namespace diptych {
 // its spread is taken over many pixels, so that no Student factor is due.
 inline constexpr float confidence = 1.96f;
 
+// JND: the standard error of a pixel of which nothing is known, as large as any can be: from black
+// to white.
+inline constexpr float unknown_error = 50;
+
 // Standard deviation of the albedo over its mean, 3 x 3 pixels.
 float texture_contrast(const Film& film, int x, int y);
 
-// One standard error of a pixel of the film, in JND; 0 with fewer than two batches.
+// One standard error of a pixel of the film, in JND.
 float pixel_error(const Film& film, int x, int y, const Viewer& viewer);
 
 // What a pixel's error stays below with 95 % probability, in JND: from its own batches and those of
@@ -30,9 +34,10 @@ void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid,
 
 // What the film's error is expected to be.
 struct ErrorSummary {
-    double rms = 0;           // JND, one standard error
-    double block_p95 = 0;     // JND; 95 % of the blocks predict less, at 95 % confidence
-    double share_within = 1;  // of the pixels, expected to be nearer to the truth than the target
+    double rms = 0;            // JND, one standard error
+    double block_p95 = 0;      // JND; 95 % of the blocks predict less, at 95 % confidence
+    double share_within = 1;   // of the pixels, expected to be nearer to the truth than the target
+    double share_unknown = 0;  // of the pixels: too few samples to tell
 };
 ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const Viewer& viewer,
                              double target);

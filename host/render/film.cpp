@@ -158,6 +158,14 @@ std::array<float, 3> Film::standard_error(int x, int y) const
                                         : std::array<float, 3>{};
 }
 
+bool Film::is_error_known(int x, int y) const
+{
+    if (!contains(data_.window, x, y)) return false;
+    const auto first =
+        data_.batch_samples.begin() + std::ptrdiff_t(pixel_at(x, y) * size_t(data_.batches));
+    return std::count_if(first, first + data_.batches, [](int n) { return n > 0; }) > 1;
+}
+
 std::array<float, 3> Film::albedo(int x, int y) const
 {
     std::array<float, 3> mean{};

@@ -77,8 +77,10 @@ public:
     // Mean radiance of a pixel of the picture; black outside the window and without samples.
     std::array<float, 3> radiance(int x, int y) const;
 
-    // Standard error of that mean, from the spread of the batches; 0 with fewer than two.
+    // Standard error of that mean, from the spread of the batches; 0 with fewer than two, which
+    // know nothing of it.
     std::array<float, 3> standard_error(int x, int y) const;
+    bool is_error_known(int x, int y) const;
     std::array<float, 3> albedo(int x, int y) const;  // mean
 
     // R, G, B and coverage of every pixel of the picture.

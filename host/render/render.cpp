@@ -39,6 +39,11 @@ double block_p95(std::vector<BlockError> errors)
     return double(p95->rms) / error_unit;
 }
 
+bool is_known(const BlockError& error)
+{
+    return error.worst_part < int(confidence * unknown_error * float(error_unit));
+}
+
 // One render: its plan, its state, and what a dispatch is made of.
 class Render {
 public:
@@ -296,7 +301,7 @@ private:
         Progress progress{uniform_fraction(), seconds_since(start_), samples,
                           statistics.rays + statistics.shadow_rays};
         if (is_adaptive(options_)) {
-            progress.error = has_picture() ? block_p95(errors_decided_by()) : 0;
+            progress.error = error_decided_by();
             if (options_.error > 0) progress.fraction = adaptive_fraction();
             if (options_.time_limit > 0)
                 progress.fraction = std::max(options_.error > 0 ? progress.fraction : 0,
@@ -312,11 +317,12 @@ private:
         return double(done_) / (double(quanta_.size()) * double(grid_.corners.size()));
     }
 
-    std::vector<BlockError> errors_decided_by() const
+    // 95 % of the blocks have less, in JND, by the last decisions; 0 before there is any.
+    double error_decided_by() const
     {
         std::vector<BlockError> errors;
         for (const BlockState& block : state_.schedule.blocks) errors.push_back(block.error);
-        return errors;
+        return std::all_of(errors.begin(), errors.end(), is_known) ? block_p95(errors) : 0;
     }
 
     // Of the samples that the errors of the last decisions ask for: what is there already.
@@ -326,7 +332,7 @@ private:
         for (size_t b = 0; b < grid_.corners.size(); ++b) {
             const BlockState& block = state_.schedule.blocks[b];
             double want = std::max(4, block.target);
-            if (!block.is_done && block.target > block.quanta / 2) {
+            if (is_known(block.error) && !block.is_done && block.target > block.quanta / 2) {
                 const double ratio =
                     double(std::max(block.error.rms, block.error.worst_part / 3)) / target();
                 want = std::max(want, 0.5 * block.target * ratio * ratio);

@@ -18,7 +18,9 @@ TEST(OpenclSanity, RunsTexturesThatMisbehave)
     options.threads = 1;
     for (const DeviceInfo& device : devices) {
         options.device = std::to_string(device.index);
-        SceneData scene = std::move(selftest_scenes().back().scene);
+        SelftestScene selftest = std::move(selftest_scenes().at(3));
+        ASSERT_STREQ(selftest.name, "procedural textures");
+        SceneData scene = std::move(selftest.scene);
         ASSERT_TRUE(scene.effects & EFFECT_TEXTURE_OCCLUSION);
         scene.settings[0].max_bounces = 1;
         const std::unique_ptr<Backend> backend = make_opencl_backend(options);

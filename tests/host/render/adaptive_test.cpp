@@ -139,6 +139,28 @@ TEST(Adaptive, ALooseTargetIsReachedAndSaidToBe)
     EXPECT_GT(missed.unfinished_blocks, 0);
 }
 
+// One batch alone does not know how wrong it is: that is not called right.
+TEST(Adaptive, WhatNobodyMeasuredIsNotCalledRight)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::unique_ptr<Backend> backend = make_backend("cpu", {});
+    backend->upload(scene);
+    RenderOptions options = to_error(1);
+    options.samples = QUANTUM;
+    const RenderResult result = render(*backend, scene, options);
+    EXPECT_EQ(result.ending, Ending::SamplesDone);
+    EXPECT_EQ(result.unfinished_blocks, result.blocks);
+    const BlockGrid grid = error_grid(scene.settings[0]);
+    const ErrorSummary summary = summarise_error(result.film, grid, options.viewer, 1);
+    EXPECT_NEAR(summary.share_unknown, 1, 1e-9);
+    EXPECT_GT(summary.block_p95, 90);
+    EXPECT_LT(summary.share_within, 0.05);
+    for (const float error : predicted_error(result.film, options.viewer)) ASSERT_GT(error, 90);
+    options.samples = 2 * QUANTUM;
+    const RenderResult judged = render(*backend, scene, options);
+    EXPECT_EQ(summarise_error(judged.film, grid, options.viewer, 1).share_unknown, 0);
+}
+
 TEST(Adaptive, APixelsFilmIsOnePixel)
 {
     const SceneData scene = busy_scene(72, 40);

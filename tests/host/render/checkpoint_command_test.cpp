@@ -278,4 +278,22 @@ TEST_F(CheckpointCommand, SurvivesAFullDisk)
     umount(disk.c_str());
 }
 
+// Neither what is refreshed nor what comes at the end takes the other pictures with it.
+TEST_F(CheckpointCommand, PicturesOnAFullDiskLeaveTheOthers)
+{
+    const std::string disk = folder_ / "disk";
+    std::filesystem::create_directory(disk);
+    if (mount("none", disk.c_str(), "tmpfs", 0, "size=4k") != 0)
+        GTEST_SKIP() << "a small tmpfs may not be mounted here";
+    const Outcome outcome = render({"--refresh", "0.001s", "-o", disk + "/b.exr", "--quiet"}, {});
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.text();
+    EXPECT_NE(outcome.err.find("rendering goes on"), std::string::npos) << outcome.text();
+    ASSERT_EQ(run_diptych({"render", "--size", "48x32", "--samples", "16", "--quiet", "-o",
+                           disk + "/b.exr", "-o", picture_})
+                  .exit_code,
+              2);
+    EXPECT_TRUE(std::filesystem::exists(picture_));
+    umount(disk.c_str());
+}
+
 }  // namespace
