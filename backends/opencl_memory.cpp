@@ -18,7 +18,12 @@ constexpr int most_items_of_cpu = 8;  // 32 thousand paths: what stays in a proc
 constexpr int results_per_slot = 4;
 constexpr int least_results_per_slot = 1;
 
-std::string megabytes(size_t bytes) { return std::to_string((bytes >> 20) + 1) + " MB"; }
+std::string amount(size_t bytes)
+{
+    const bool is_small = bytes < (10u << 20);
+    const size_t unit = is_small ? 1u << 10 : 1u << 20;
+    return std::to_string((bytes + unit - 1) / unit) + (is_small ? " KiB" : " MiB");
+}
 
 template<class Rows>
 size_t plane_bytes(const Rows& rows)
@@ -77,8 +82,8 @@ void check_allocation(const DeviceInfo& device, int shift, const std::string& na
         is_large(name) && shift > 0 ? size_t(LARGE_PAGES) << shift : device.largest_allocation;
     if (bytes > room)
         throw std::runtime_error(
-            "opencl: " + device.name + ": the scene's " + name + " need " + megabytes(bytes) +
-            ", the device allocates at most " + megabytes(device.largest_allocation) + " at once" +
+            "opencl: " + device.name + ": the scene's " + name + " need " + amount(bytes) +
+            ", the device allocates at most " + amount(device.largest_allocation) + " at once" +
             (is_large(name) ? ", of which " + std::to_string(LARGE_PAGES) + " can be used" : "") +
             "; simplify the scene or use --backend cpu");
 }
@@ -295,14 +300,14 @@ Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory
     const size_t least = needed(least_results_per_slot);
     if (budget < taken + least)
         throw std::runtime_error(
-            "opencl: " + device.name + ": " + megabytes(budget) + " do not hold the scene (" +
-            megabytes(taken) + ") and one block of paths (" + megabytes(least) + "); " +
+            "opencl: " + device.name + ": " + amount(budget) + " do not hold the scene (" +
+            amount(taken) + ") and one block of paths (" + amount(least) + "); " +
             (budget < memory_bytes ? "choose a device with more memory" : "raise --memory"));
     const size_t narrowest = widest_buffer(scene, least_results_per_slot);
     if (device.largest_allocation < narrowest)
         throw std::runtime_error("opencl: " + device.name + ": allocates at most " +
-                                 megabytes(device.largest_allocation) +
-                                 " at once, one block of paths needs " + megabytes(narrowest) +
+                                 amount(device.largest_allocation) +
+                                 " at once, one block of paths needs " + amount(narrowest) +
                                  "; choose another device or --backend cpu");
     const int most = device.is_cpu ? most_items_of_cpu : most_items;
     const auto items_of = [&](int results_a_slot) {

@@ -73,13 +73,15 @@ std::pair<int, int> parse_range(const std::string& text, int samples)
 
 void add_checkpoint_flags(CLI::App& app, CheckpointFlags& flags)
 {
-    app.add_option("--checkpoint", flags.file,
-                   "Keep the render's state in this file, and go on from it where it exists: the "
-                   "picture is the one of a render that was never interrupted");
+    CLI::Option* file =
+        app.add_option("--checkpoint", flags.file,
+                       "Keep the render's state in this file, and go on from it where it exists: "
+                       "the picture is the one of a render that was never interrupted");
     app.add_option("--every", flags.every,
                    "Time between two writings of the checkpoint, as 10s, 5m, 1h; longer where "
                    "writing would take more than 1 % of the time")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->needs(file);
     app.add_flag("--restart", flags.is_restart, "Begin anew, whatever the checkpoint holds");
     app.add_option("--range", flags.range,
                    "Render only samples A..B of each pixel, A to B - 1, of the --samples of the "

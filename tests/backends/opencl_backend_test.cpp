@@ -411,13 +411,13 @@ TEST_F(OpenclBackendTest, RefusesByNumbersWhatIsTooLargeForItsAllocations)
     scene.texels_8.resize((5u << 20) / sizeof(uint));
     on_each_device({}, [&](Backend& backend) {
         const std::string message = message_of([&] { backend.plan(scene); });
-        EXPECT_NE(message.find("texels_8 need 6 MB"), std::string::npos) << message;
-        EXPECT_NE(message.find("at most 2 MB at once, of which 4"), std::string::npos) << message;
+        EXPECT_NE(message.find("texels_8 need 5120 KiB"), std::string::npos) << message;
+        EXPECT_NE(message.find("at most 1024 KiB at once, of which 4"), std::string::npos) << message;
         scene.texels_8.resize((4u << 20) / sizeof(uint));
         EXPECT_EQ(message_of([&] { backend.plan(scene); }), "");
         scene.lights.resize((2u << 20) / sizeof(Light));
         const std::string lights = message_of([&] { backend.plan(scene); });
-        EXPECT_NE(lights.find("lights need 3 MB"), std::string::npos) << lights;
+        EXPECT_NE(lights.find("lights need 2048 KiB"), std::string::npos) << lights;
         scene.lights.resize(1);
     });
 }

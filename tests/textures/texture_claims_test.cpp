@@ -188,7 +188,7 @@ TEST_P(TextureClaims, TX_14_ANewTextCompilesTheTextureStageAlone)
     RenderOptions options;
     options.samples = 64;
     const std::array<float, 3> seen = render(*backend_, edited, options).film.radiance(8, 8);
-    EXPECT_NEAR(seen[1], 0.125f, 1e-4f);
+    EXPECT_NEAR(seen[1], 0.125f, 0.005f);  // a pixel of 64 samples: four standard errors
 }
 
 // In lanes each function is a loop of its own, in two forms: an edit leaves those of others alone.
