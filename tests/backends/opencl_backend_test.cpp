@@ -412,7 +412,8 @@ TEST_F(OpenclBackendTest, RefusesByNumbersWhatIsTooLargeForItsAllocations)
     on_each_device({}, [&](Backend& backend) {
         const std::string message = message_of([&] { backend.plan(scene); });
         EXPECT_NE(message.find("texels_8 need 5120 KiB"), std::string::npos) << message;
-        EXPECT_NE(message.find("at most 1024 KiB at once, of which 4"), std::string::npos) << message;
+        EXPECT_NE(message.find("at most 1024 KiB at once, of which 4"), std::string::npos)
+            << message;
         scene.texels_8.resize((4u << 20) / sizeof(uint));
         EXPECT_EQ(message_of([&] { backend.plan(scene); }), "");
         scene.lights.resize((2u << 20) / sizeof(Light));
