@@ -1,5 +1,5 @@
-// The scene in Embree's hands, and the native stages of the `cpu` backend: rays in packets of 8 or
-// 16 over the live paths.
+// The scene in Embree's hands, and the native stages of the `cpu` backend: over the live paths,
+// camera and shadow rays in packets of 8 or 16, scattered rays one by one.
 #pragma once
 
 #include "kernels_cpu/kernels.hpp"
