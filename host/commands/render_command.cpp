@@ -64,9 +64,9 @@ void print_audit(const Audit& audit, double bar)
     fmt::print(stderr,
                "audit: {} blocks rendered again by other samples in {:.1f} s: RMS error {:.3g} JND "
                "({:.3g} to {:.3g}); {:.1f} % of the pixels within {:.3g} JND; {:.1f} % of those "
-               "predicted to be\n",
+               "predicted to be; of the blocks predicted below it {:.1f} % above\n",
                audit.blocks, audit.seconds, audit.rms, audit.rms_low, audit.rms_high,
-               100 * audit.share_within, bar, 100 * audit.share_covered);
+               100 * audit.share_within, bar, 100 * audit.share_covered, 100 * audit.share_false);
 }
 
 void print_summary(const RenderCommand& command, const RenderResult& result)

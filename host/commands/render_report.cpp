@@ -210,6 +210,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
                            {"rms_high", audited->rms_high},
                            {"share_within", audited->share_within},
                            {"share_covered", audited->share_covered},
+                           {"share_false", audited->share_false},
                            {"seconds", audited->seconds}};
     if (scene.effects & EFFECT_PROCEDURAL) report["textures"] = texture_fault_json(textures);
     if (fault)

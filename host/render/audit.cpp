@@ -102,6 +102,8 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
 
     Audit audit;
     Tally all;
+    const std::vector<BlockError> predicted = block_errors(result.film, grid, options.viewer);
+    int calm = 0, wrong = 0;
     std::vector<Tally> tallies;
     for (const size_t b : chosen_blocks(grid.corners.size())) {
         const int quanta = result.schedule.blocks[b].quanta;
@@ -112,6 +114,9 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
             render_block(backend, grid, grid.corners[b], times_the_samples * samples, most);
         const Tally tally = compare_block(result.film, again, options.viewer, bar);
         tallies.push_back(tally);
+        const bool is_calm = predicted[b].rms <= int(bar * error_unit);
+        calm += is_calm;
+        wrong += is_calm && tally.square > bar * bar * tally.pixels;
         all.pixels += tally.pixels;
         all.within += tally.within;
         all.predicted += tally.predicted;
@@ -122,6 +127,7 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
     audit.blocks = int(tallies.size());
     if (!tallies.empty()) add_interval(audit, tallies);
     if (all.pixels > 0) audit.share_within = all.within / all.pixels;
+    if (calm > 0) audit.share_false = double(wrong) / calm;
     if (all.predicted > 0) audit.share_covered = all.covered / all.predicted;
     audit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return audit;

@@ -12,6 +12,7 @@ struct Audit {
     double rms_high = 0;
     double share_within = 0;   // of the pixels: nearer to the new ones than `bar`
     double share_covered = 0;  // of those predicted to be within `bar`: were so
+    double share_false = 0;    // of the blocks predicted below `bar`: have an RMS above it
     double seconds = 0;
 };
 

@@ -27,6 +27,7 @@ TEST(ErrorCommand, EndsByItselfSaysHowSureItIsAndShowsWhere)
     EXPECT_LT(report["audit"]["rms_low"].get<double>(), 2 * report["error"]["rms"].get<double>());
     EXPECT_GT(report["audit"]["rms_high"].get<double>(),
               0.5 * report["error"]["rms"].get<double>());
+    EXPECT_EQ(report["audit"]["share_false"], 0);
 
     const image::Picture picture = image::read_picture(folder / "out.exr");
     EXPECT_NE(image::find_layer(picture, "predicted_error"), nullptr);
