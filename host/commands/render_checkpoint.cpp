@@ -73,15 +73,12 @@ std::pair<int, int> parse_range(const std::string& text, int samples)
 
 void add_checkpoint_flags(CLI::App& app, CheckpointFlags& flags)
 {
-    CLI::Option* file =
-        app.add_option("--checkpoint", flags.file,
-                       "Keep the render's state in this file, and go on from it where it exists: "
-                       "the picture is the one of a render that was never interrupted");
+    app.add_option("--checkpoint", flags.file,
+                   "Keep the render's state in this file, and go on from it where it exists: the "
+                   "picture is the one of a render that was never interrupted");
     app.add_option("--every", flags.every,
-                   "Time between two writings of the checkpoint, as 10s, 5m, 1h; longer where "
-                   "writing would take more than 1 % of the time")
-        ->capture_default_str()
-        ->needs(file);
+                   "Time between two writings of the checkpoint, as 10s (if not given), 5m, 1h; "
+                   "longer where writing would take more than 1 % of the time");
     app.add_flag("--restart", flags.is_restart, "Begin anew, whatever the checkpoint holds");
     app.add_option("--range", flags.range,
                    "Render only samples A..B of each pixel, A to B - 1, of the --samples of the "
@@ -98,8 +95,12 @@ void set_range(const std::string& text, RenderOptions& options)
 }
 
 RenderCheckpoint::RenderCheckpoint(const CheckpointFlags& flags)
-    : flags_(flags), seconds_between_(parse_seconds("--every", flags.every))
+    : flags_(flags),
+      seconds_between_(parse_seconds("--every", flags.every.empty() ? "10s" : flags.every))
 {
+    if (flags_.file.empty() && !flags_.every.empty())
+        throw std::runtime_error("--every: there is no checkpoint to write; name it with "
+                                 "--checkpoint, or leave --every out");
     if (flags_.file.empty() && flags_.is_restart)
         throw std::runtime_error("--restart: there is no checkpoint to begin anew; name it with "
                                  "--checkpoint, or leave --restart out");

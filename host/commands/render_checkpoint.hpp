@@ -14,7 +14,7 @@ namespace diptych {
 
 struct CheckpointFlags {
     std::string file;
-    std::string every = "10s";
+    std::string every;  // empty: 10s
     std::string range;
     bool is_restart = false;
 };

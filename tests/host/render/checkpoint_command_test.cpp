@@ -204,6 +204,7 @@ TEST_F(CheckpointCommand, RefusesToGoOnFromAnotherPicture)
     refuse({"--range", "32..16"}, "not a range of samples");
     refuse({"--range", "all"}, "not a range of samples");
     expect_refusal(render({"--restart", "--quiet"}), "--restart: there is no checkpoint");
+    expect_refusal(render({"--every", "3s", "--quiet"}), "--every: there is no checkpoint");
     std::ofstream(file_, std::ios::binary) << before.substr(0, before.size() / 2);
     expect_refusal(render(kept_), "cut short");
     std::ofstream(file_, std::ios::binary) << "DIPTYCHK\x09" << before.substr(9);
