@@ -16,6 +16,7 @@
 #include <functional>
 #include <future>
 #include <iterator>
+#include <span>
 #include <stdexcept>
 #include <thread>
 #include <unistd.h>
@@ -86,10 +87,16 @@ std::string processor()
 // kernels_cpu/CMakeLists.txt.
 void add_flags_of_gcc(const std::string& program, std::vector<std::string>& flags)
 {
-    for (const std::string flag :
-         {"-fno-thread-jumps", "--param=max-combine-insns=2", "-mtune-ctrl=use_gather"})
-        if (run_program({program, flag, "-E", "-x", "c", "/dev/null"}).exit_code == 0)
-            flags.push_back(flag);
+    const std::vector<std::string> own = {"-fno-thread-jumps", "--param=max-combine-insns=2",
+                                          "-mtune-ctrl=use_gather"};
+    const auto are_known = [&](std::span<const std::string> some) {
+        std::vector<std::string> command = {program, "-E", "-x", "c", "/dev/null"};
+        command.insert(command.end(), some.begin(), some.end());
+        return run_program(command).exit_code == 0;
+    };
+    const bool are_all_known = are_known(own);  // mostly: one process instead of three
+    for (const std::string& flag : own)
+        if (are_all_known || are_known({&flag, 1})) flags.push_back(flag);
 }
 
 // A host that runs under the address sanitizer has users' code watched too.

@@ -40,14 +40,14 @@ void ProgressPictures::look_at(const Film& film)
     if (interval_ <= 0 || std::chrono::duration<double>(now - last_written_).count() < interval_)
         return;
     const image::Picture picture = picture_of(film, options_.viewer);
-    for (const std::string& path : command_.outputs) try {
-            image::write_picture(path, picture, write_);
-        } catch (const std::runtime_error& error) {
-            if (!has_failed_)
-                fmt::print(stderr, "notice: {}; rendering goes on, and it is tried again\n",
-                           error.what());
-            has_failed_ = true;
-        }
+    try {
+        image::write_pictures(command_.outputs, picture, write_);
+    } catch (const std::runtime_error& error) {
+        if (!has_failed_)
+            fmt::print(stderr, "notice: {}; rendering goes on, and it is tried again\n",
+                       error.what());
+        has_failed_ = true;
+    }
     last_written_ = Clock::now();
 }
 

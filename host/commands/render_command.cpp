@@ -26,19 +26,6 @@ std::atomic<bool> is_interrupted{false};
 
 extern "C" void on_interrupt(int) { is_interrupted = true; }
 
-// The others where one cannot be written; that is said after them.
-void write_all(const std::vector<std::string>& paths, const image::Picture& picture,
-               const image::WriteOptions& options)
-{
-    std::string failure;
-    for (const std::string& path : paths) try {
-            image::write_picture(path, picture, options);
-        } catch (const std::runtime_error& error) {
-            if (failure.empty()) failure = error.what();
-        }
-    if (!failure.empty()) throw std::runtime_error(failure);
-}
-
 void print_pixel(const Film& film, const Pixel& pixel)
 {
     const std::array<float, 3> value = film.radiance(pixel.x, pixel.y);
@@ -266,7 +253,7 @@ int run_render_command(const RenderCommand& command)
     if (!run.outputs.empty() || !run.json.empty())
         picture = picture_of(result.film, options.viewer);
     if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
-    write_all(run.outputs, picture, write);
+    image::write_pictures(run.outputs, picture, write);
     if (options.pixel) print_pixel(result.film, *options.pixel);
     if (!run.capture.empty()) {
         const TextureCapture capture =

@@ -73,8 +73,7 @@ private:
         picture.metadata["backend"] = command_.device.backend;
         if (!command_.is_reproducible) picture.metadata["command_line"] = command_.command_line;
         try {
-            for (const std::string& path : command_.outputs)
-                image::write_picture(path, picture, write_);
+            image::write_pictures(command_.outputs, picture, write_);
         } catch (const std::runtime_error& error) {
             fmt::print(stderr, "{}\n", error.what());
             return false;

@@ -73,6 +73,11 @@ struct WriteOptions {
 void write_picture(const std::string& path, const Picture& picture,
                    const WriteOptions& options = {});
 
+// The same picture to all of the paths; where one cannot be written, the others are before that is
+// thrown.
+void write_pictures(const std::vector<std::string>& paths, const Picture& picture,
+                    const WriteOptions& options = {});
+
 // Its extension is one that write_picture knows.
 bool is_picture_name(const std::string& path);
 

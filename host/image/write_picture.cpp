@@ -284,6 +284,20 @@ void write_picture(const std::string& path, const Picture& picture, const WriteO
     write_file_whole(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
+void write_pictures(const std::vector<std::string>& paths, const Picture& picture,
+                    const WriteOptions& options)
+{
+    std::string failure;
+    for (const std::string& path : paths) {
+        try {
+            write_picture(path, picture, options);
+        } catch (const std::runtime_error& error) {
+            if (failure.empty()) failure = error.what();
+        }
+    }
+    if (!failure.empty()) throw std::runtime_error(failure);
+}
+
 void write_file_whole(const std::string& path, std::string_view bytes)
 {
     TemporaryFile file(path);

@@ -102,7 +102,6 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
 
     Audit audit;
     Tally all;
-    const std::vector<BlockError> predicted = block_errors(result.film, grid, options.viewer);
     int calm = 0, wrong = 0;
     std::vector<Tally> tallies;
     for (const size_t b : chosen_blocks(grid.corners.size())) {
@@ -114,7 +113,9 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
             render_block(backend, grid, grid.corners[b], times_the_samples * samples, most);
         const Tally tally = compare_block(result.film, again, options.viewer, bar);
         tallies.push_back(tally);
-        const bool is_calm = predicted[b].rms <= int(bar * error_unit);
+        const BlockError predicted =
+            block_error(result.film, options.viewer, grid.corners[b], grid.shift);
+        const bool is_calm = predicted.rms <= int(bar * error_unit);
         calm += is_calm;
         wrong += is_calm && tally.square > bar * bar * tally.pixels;
         all.pixels += tally.pixels;

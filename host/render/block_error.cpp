@@ -51,6 +51,16 @@ float contrast_around(const Window& area, int x, int y, const Value& value)
     return mean > 0 ? std::sqrt(variance) / mean : 0;
 }
 
+// contrast(): of the texture at the pixel; asked where it counts.
+template<class Contrast>
+float error_at(const Film& film, int x, int y, const Viewer& viewer, const Contrast& contrast)
+{
+    if (!film.is_error_known(x, y)) return unknown_error;
+    const std::array<float, 3> error = film.standard_error(x, y);
+    if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
+    return visible_error(film.radiance(x, y), error, contrast(), viewer);
+}
+
 // Errors of the pixels of an area of the film's window, by what lies in it: pixel_error with the
 // albedos worked out once.
 class PixelErrors {
@@ -62,13 +72,10 @@ public:
 
     float at(int x, int y) const
     {
-        if (!film_.is_error_known(x, y)) return unknown_error;
-        const std::array<float, 3> error = film_.standard_error(x, y);
-        if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
-        const float contrast = contrast_around(area_, x, y, [&](int u, int v) {
+        const auto albedo = [&](int u, int v) {
             return albedos_[size_t(v - area_.y) * size_t(area_.width) + size_t(u - area_.x)];
-        });
-        return visible_error(film_.radiance(x, y), error, contrast, viewer_);
+        };
+        return error_at(film_, x, y, viewer_, [&] { return contrast_around(area_, x, y, albedo); });
     }
 
 private:
@@ -89,8 +96,8 @@ double share_below(double bound, double deviation)
     return deviation > 0 ? std::erf(bound / (deviation * std::sqrt(2.0))) : 1;
 }
 
-// RMS of `confidence` standard errors over the block's pixels. Nothing outside of it counts:
-// neighbours may be under way.
+}  // namespace
+
 BlockError block_error(const Film& film, const Viewer& viewer, Pixel corner, int shift)
 {
     const int parts = std::max(1, 1 << (shift - part_shift));
@@ -116,8 +123,6 @@ BlockError block_error(const Film& film, const Viewer& viewer, Pixel corner, int
     return {quantised(std::sqrt(all / pixels)), quantised(std::sqrt(worst))};
 }
 
-}  // namespace
-
 float texture_contrast(const Film& film, int x, int y)
 {
     return contrast_around(film.data().window, x, y,
@@ -126,10 +131,7 @@ float texture_contrast(const Film& film, int x, int y)
 
 float pixel_error(const Film& film, int x, int y, const Viewer& viewer)
 {
-    if (!film.is_error_known(x, y)) return unknown_error;
-    const std::array<float, 3> error = film.standard_error(x, y);
-    if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
-    return visible_error(film.radiance(x, y), error, texture_contrast(film, x, y), viewer);
+    return error_at(film, x, y, viewer, [&] { return texture_contrast(film, x, y); });
 }
 
 float pixel_bound(const Film& film, int x, int y, const Viewer& viewer)
@@ -153,11 +155,20 @@ std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, co
     return errors;
 }
 
+double block_p95(std::vector<BlockError> errors)
+{
+    const auto p95 = errors.begin() + std::ptrdiff_t((errors.size() - 1) * 95 / 100);
+    std::nth_element(errors.begin(), p95, errors.end(),
+                     [](const BlockError& a, const BlockError& b) { return a.rms < b.rms; });
+    return double(p95->rms) / error_unit;
+}
+
 void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid, const Viewer& viewer)
 {
-    for (size_t b = size_t(schedule.turn); b < schedule.blocks.size(); b += size_t(schedule.teams))
+    for_team(schedule, schedule.turn, [&](size_t b) {
         if (!schedule.blocks[b].is_done)
             schedule.blocks[b].error = block_error(film, viewer, grid.corners[b], grid.shift);
+    });
 }
 
 ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const Viewer& viewer,
@@ -176,11 +187,7 @@ ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const View
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x)
             summary.share_unknown += film.is_error_known(x, y) ? 0 : 1 / pixels;
-    std::vector<BlockError> blocks = block_errors(film, grid, viewer);
-    const auto p95 = blocks.begin() + std::ptrdiff_t((blocks.size() - 1) * 95 / 100);
-    std::nth_element(blocks.begin(), p95, blocks.end(),
-                     [](const BlockError& a, const BlockError& b) { return a.rms < b.rms; });
-    summary.block_p95 = double(p95->rms) / error_unit;
+    summary.block_p95 = block_p95(block_errors(film, grid, viewer));
     return summary;
 }
 

@@ -25,8 +25,13 @@ float pixel_error(const Film& film, int x, int y, const Viewer& viewer);
 // its neighbours, 3 x 3 pixels.
 float pixel_bound(const Film& film, int x, int y, const Viewer& viewer);
 
-// Of each block: RMS of `confidence` standard errors over its pixels.
+// RMS of `confidence` standard errors over a block's pixels. Nothing outside of it counts:
+// neighbours may be under way.
+BlockError block_error(const Film& film, const Viewer& viewer, Pixel corner, int shift);
+// Of each block.
 std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, const Viewer& viewer);
+// 95 % of the blocks have less, in JND.
+double block_p95(std::vector<BlockError> errors);
 
 // The same, of the blocks that are not done of the team whose turn it is, into their states.
 void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid,

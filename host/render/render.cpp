@@ -30,15 +30,6 @@ int film_batches(const RenderOptions& options)
     return is_adaptive(options) ? batch_count : batches_of(options.samples);
 }
 
-// 95 % of the blocks have less, in JND.
-double block_p95(std::vector<BlockError> errors)
-{
-    const auto p95 = errors.begin() + std::ptrdiff_t((errors.size() - 1) * 95 / 100);
-    std::nth_element(errors.begin(), p95, errors.end(),
-                     [](const BlockError& a, const BlockError& b) { return a.rms < b.rms; });
-    return double(p95->rms) / error_unit;
-}
-
 bool is_known(const BlockError& error)
 {
     return error.worst_part < int(confidence * unknown_error * float(error_unit));
@@ -214,13 +205,13 @@ private:
     bool will_more_follow(int samples) const
     {
         const Schedule& schedule = state_.schedule;
+        if (schedule.teams == 1) return false;
         bool will_more = false;
-        for (size_t b = size_t(schedule.turn); b < schedule.blocks.size() && schedule.teams > 1;
-             b += size_t(schedule.teams)) {
+        for_team(schedule, schedule.turn, [&](size_t b) {
             const BlockState& block = schedule.blocks[b];
             will_more = will_more || (!block.is_done && block.target < int(quanta_.size()) &&
                                       quanta_[size_t(block.target)].samples == samples);
-        }
+        });
         return will_more;
     }
 

@@ -61,15 +61,17 @@ std::vector<Work> work_by_pass(const Schedule& schedule)
 
 bool is_round_done(const Schedule& schedule, int team)
 {
-    for (size_t b = size_t(team); b < schedule.blocks.size(); b += size_t(schedule.teams))
-        if (schedule.blocks[b].quanta < schedule.blocks[b].target) return false;
-    return true;
+    bool is_done = true;
+    for_team(schedule, team, [&](size_t b) {
+        is_done = is_done && schedule.blocks[b].quanta >= schedule.blocks[b].target;
+    });
+    return is_done;
 }
 
 std::vector<Work> work_by_block(const Schedule& schedule, std::span<const Quantum> plan, int team)
 {
     std::vector<int> order;
-    for (int b = team; b < int(schedule.blocks.size()); b += schedule.teams) order.push_back(b);
+    for_team(schedule, team, [&](size_t b) { order.push_back(int(b)); });
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
         return schedule.blocks[size_t(a)].error.rms > schedule.blocks[size_t(b)].error.rms;
     });
@@ -194,15 +196,14 @@ bool begin_adaptive_round(Schedule& schedule, const BlockGrid& grid, std::span<c
     const int length = int(plan.size());
     const int least = std::min(targets.least_samples, samples_of({length, 0, false}, plan));
     bool is_work_left = false, is_pilot_over = targets.is_unbiased && schedule.pilot == 0;
-    for (size_t b = size_t(schedule.turn); b < schedule.blocks.size();
-         b += size_t(schedule.teams)) {
+    for_team(schedule, schedule.turn, [&](size_t b) {
         BlockState& block = schedule.blocks[b];
         const int samples = samples_of(block, plan);
         is_pilot_over = is_pilot_over && samples >= least;
         block.is_done = block.is_done || block.quanta >= length || schedule.pilot > 0 ||
                         (samples >= least && !targets.is_unbiased &&
                          is_converged(b, map, schedule.blocks, targets.error));
-        if (block.is_done) continue;
+        if (block.is_done) return;
         if (samples < least) {
             block.target = doubled(block, plan);
         } else {
@@ -213,7 +214,7 @@ bool begin_adaptive_round(Schedule& schedule, const BlockGrid& grid, std::span<c
             block.target = std::min(block.quanta + int(quanta), length);
         }
         is_work_left = true;
-    }
+    });
     if (is_pilot_over && is_work_left) begin_after_pilot(schedule, map, plan, targets);
     if (is_work_left) ++schedule.round;
     schedule.turn = (schedule.turn + 1) % schedule.teams;

@@ -77,6 +77,13 @@ struct Schedule {
     std::vector<BlockState> blocks;
 };
 
+// Calls visit(block) for each of a team's.
+template<class Visit>
+void for_team(const Schedule& schedule, int team, const Visit& visit)
+{
+    for (size_t b = size_t(team); b < schedule.blocks.size(); b += size_t(schedule.teams)) visit(b);
+}
+
 // A quantum of a block, by their indices.
 struct Work {
     int block;
