@@ -220,8 +220,10 @@ void check_expansions(Description& description)
 
 std::string parser_version() { return LLVM_VERSION_STRING; }
 
-Description find(const std::string& name, const std::string& source)
+Description find(const std::string& name, const std::string& text)
 {
+    constexpr std::string_view mark = "\xef\xbb\xbf";  // that some editors put before UTF-8
+    const std::string source = text.substr(text.compare(0, 3, mark) == 0 ? mark.size() : 0);
     Description description;
     description.file = name;
     description.source = source;
@@ -243,6 +245,7 @@ Description find(const std::string& name, const std::string& source)
     check_words(words, description.problems);
     for (const Problem& problem : description.problems)
         if (problem.text.find("reads another file") != std::string::npos) return description;
+    blank_pragmas(words, parsed);
     const std::map<std::string, std::string> own_names = rename_own(words, parsed);
     const LibraryText library = library_for(words);
     parsed = library.text + parsed;
@@ -279,6 +282,8 @@ Description find(const std::string& name, const std::string& source)
                                               "-Wno-error=return-type",
                                               "-Werror=implicit-int",
                                               "-Werror=excess-initializers",
+                                              "-Werror=incompatible-pointer-types",
+                                              "-Werror=unsequenced",
                                               "-ferror-limit=20",
                                               "-include",
                                               "/prelude.h",

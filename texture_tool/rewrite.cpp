@@ -106,6 +106,9 @@ private:
         case SiteKind::CompoundLiteral:
             if (!is_cpp_) return;
             text_.replace(site.token, "");
+            for (int i = site.token + 1; i < site.token2; ++i)  // C++ would read a declaration
+                for (const char* word : {"const", "struct", "union", "enum"})
+                    if (description_.tokens[i].text == word) text_.replace(i, "");
             return text_.replace(site.token2, "");
         case SiteKind::Swizzle:
             return swizzle(site);

@@ -146,6 +146,8 @@ void check_word(const Word& word, std::vector<Problem>& problems)
                      "compiler does; remove it");
     else if (text == "asm" || text == "__asm__" || text == "__asm")
         complain(problems, word, "assembly runs on one processor only; write it in C");
+    else if (text == "_Alignas" || text == "_Noreturn")
+        complain(problems, word, text + " is not C99, and C++ spells it otherwise; remove it");
     else if (text == "_Pragma" || text == "__pragma")
         complain(problems, word, text + " is not part of the language; remove it");
     else if (text.rfind("__has_", 0) == 0)
@@ -175,6 +177,12 @@ bool is_name(const std::string& text)
     return !text.empty() && (isalpha(static_cast<unsigned char>(text[0])) || text[0] == '_');
 }
 
+bool starts_directive(const std::vector<Word>& words, size_t i)
+{
+    return words[i].starts_line && words[i].text == "#" && i + 1 < words.size() &&
+           words[i + 1].is_in_directive && is_name(words[i + 1].text);
+}
+
 }  // namespace
 
 std::vector<Word> scan_words(const std::string& source) { return Scanner(source).run(); }
@@ -189,11 +197,24 @@ void check_words(const std::vector<Word>& words, std::vector<Problem>& problems)
             complain(problems, word,
                      "attributes and digraphs are not part of the language: " + word.text + next +
                          " could change what the compiler does; remove it");
-        if (word.starts_line && word.text == "#" && i + 1 < words.size() &&
-            words[i + 1].is_in_directive && is_name(words[i + 1].text))
+        if (starts_directive(words, i))
             check_directive(word, words[i + 1], problems);
         else
             check_word(word, problems);
+    }
+}
+
+void blank_pragmas(const std::vector<Word>& words, std::string& source)
+{
+    for (size_t i = 0; i + 1 < words.size(); ++i) {
+        if (!starts_directive(words, i) || words[i + 1].text != "pragma") continue;
+        size_t next = i + 1;
+        while (next < words.size() && words[next].is_in_directive && !words[next].starts_line)
+            ++next;
+        const size_t end =
+            next < words.size() ? static_cast<size_t>(words[next].offset) : source.size();
+        for (size_t at = static_cast<size_t>(words[i].offset); at < end; ++at)
+            if (source[at] != '\n') source[at] = ' ';
     }
 }
 

@@ -24,6 +24,9 @@ std::vector<Word> scan_words(const std::string& source);
 // Directives and words that no texture may hold.
 void check_words(const std::vector<Word>& words, std::vector<Problem>& problems);
 
+// Takes every #pragma out of `source`, whose lines and offsets stay.
+void blank_pragmas(const std::vector<Word>& words, std::string& source);
+
 // The user's own functions and types that share a name with the language's: each gets another name
 // of the same length for the parser, so that the user's wins. Changes `source` in place.
 std::map<std::string, std::string> rename_own(const std::vector<Word>& words, std::string& source);

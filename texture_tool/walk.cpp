@@ -1,6 +1,8 @@
 // The walk over declarations.
 #include "texture_tool/walk.hpp"
 
+#include <algorithm>
+
 #include <clang/AST/Attr.h>
 #include <clang/AST/TypeLoc.h>
 #include <clang/Basic/SourceManager.h>
@@ -167,6 +169,16 @@ std::string Walk::spelled_type(QualType type) const
     }
 }
 
+bool Walk::holds_image(QualType type) const
+{
+    type = context_.getBaseElementType(type);
+    if (spelled_type(type) == "sam2D") return true;
+    const RecordDecl* record = type->getAsRecordDecl();
+    return record &&
+           std::any_of(record->field_begin(), record->field_end(),
+                       [&](const FieldDecl* field) { return holds_image(field->getType()); });
+}
+
 void Walk::type_allowed(QualType type, SourceLocation at, const std::string& what)
 {
     const QualType plain = type.getCanonicalType();
@@ -229,6 +241,9 @@ void Walk::record(const RecordDecl* type)
                      "bit fields differ between compilers; use shifts and masks");
         type_allowed(field->getType(), field->getLocation(),
                      "the field '" + field->getName().str() + "'");
+        if (type->isUnion() && holds_image(field->getType()))
+            complain(field->getLocation(), "an image shares its bytes with numbers; keep images in "
+                                           "variables, arrays and structs");
         rename(token_at(field->getLocation()), field->getName().str(), false);
         types_in(field->getTypeSourceInfo());
     }
@@ -261,7 +276,7 @@ void Walk::initialiser(const Expr* value, bool is_constant)
 {
     const bool was_constant = in_constant_;
     in_constant_ = in_constant_ || is_constant;
-    expression(value);
+    whole_expression(value);
     in_constant_ = was_constant;
 }
 
@@ -414,7 +429,9 @@ void Walk::local_variable(const VarDecl* variable, const DeclStmt* statement)
         site.other = spelled_type(variable->getType()).empty() ? "" : "number";
         return;
     }
+    initialised_ = variable;
     initialiser(variable->getInit(), false);
+    initialised_ = nullptr;
     watch(variable->getInit());
 }
 

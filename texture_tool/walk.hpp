@@ -40,7 +40,9 @@ private:
     void statement(const clang::Stmt* node);
     void children(const clang::Stmt* node);
     void loop(const clang::Stmt* node);
+    void redeclared(const clang::ForStmt* loop);
     void switch_statement(const clang::SwitchStmt* node);
+    void whole_expression(const clang::Expr* node);
     void expression(const clang::Expr* node);
     void reference(const clang::DeclRefExpr* node);
     void binary(const clang::BinaryOperator* node);
@@ -80,6 +82,7 @@ private:
     bool is_constant(const clang::Expr* node) const;
     Interval interval_of(const clang::Expr* node) const;
     bool has_side_effects(const clang::Expr* node) const;
+    bool holds_image(clang::QualType type) const;
     const Parameter* parameter_named(const clang::Expr* node) const;
     Site& add(SiteKind kind);
 
@@ -93,6 +96,21 @@ private:
     std::set<const clang::Stmt*> statement_expressions_;  // whose value nobody uses
     std::set<const clang::Stmt*> bounded_steps_;  // counters' changes, which cannot overflow
     std::set<const clang::Expr*> handled_;  // by their parents: written swizzles, passed arrays
+    // What it is told of lies one level deeper, for as long as it lives.
+    class Level {
+    public:
+        explicit Level(int& depth) : depth_(depth) { ++depth_; }
+        ~Level() { --depth_; }
+        Level(const Level&) = delete;
+        Level& operator=(const Level&) = delete;
+
+    private:
+        int& depth_;
+    };
+    bool is_too_deep(const clang::Stmt* node);
+
+    int depth_ = 0;                                // of the statement or expression
+    const clang::VarDecl* initialised_ = nullptr;  // the local variable whose value is walked
     int function_ = -1;
     long trips_ = 1;
     bool in_constant_ = false;

@@ -2,7 +2,11 @@
 // rewriting goes from the inside out.
 #include "texture_tool/walk.hpp"
 
+#include <cerrno>
+#include <cstdlib>
+
 #include "texture_tool/language.hpp"
+#include "texture_tool/order.hpp"
 
 namespace texture_tool {
 
@@ -117,8 +121,19 @@ const Parameter* Walk::parameter_named(const Expr* node) const
     return &description_.functions[found->second.first].parameters[found->second.second];
 }
 
+void Walk::whole_expression(const Expr* node)
+{
+    expression(node);
+    if (const Order::Clash clash = Order().clash_in(node); clash.variable)
+        complain(clash.at->getExprLoc(), "'" + own_name(clash.variable->getName().str()) +
+                                             "' is changed and used here in an order that "
+                                             "compilers choose; use a statement for each");
+}
+
 void Walk::expression(const Expr* node)
 {
+    const Level level(depth_);
+    if (is_too_deep(node)) return;
     if (const auto* value = dyn_cast<DeclRefExpr>(node)) return reference(value);
     if (const auto* value = dyn_cast<CallExpr>(node)) return call(value);
     if (const auto* value = dyn_cast<ImplicitCastExpr>(node)) return implicit_cast(value);
@@ -136,9 +151,16 @@ void Walk::expression(const Expr* node)
             for (const Stmt* child : node->children()) statement_expressions_.insert(child);
         return children(node);
     }
-    if (isa<IntegerLiteral>(node) || isa<CharacterLiteral>(node) ||
-        isa<ImplicitValueInitExpr>(node))
+    if (isa<IntegerLiteral>(node)) {
+        const int token = token_at(node->getBeginLoc());
+        errno = 0;
+        if (token >= 0 && strtoull(description_.tokens[token].text.c_str(), nullptr, 0) > 0 &&
+            errno == ERANGE)
+            complain(node->getBeginLoc(), "this number needs more than 64 bits; write a smaller "
+                                          "one, or a float");
         return;
+    }
+    if (isa<CharacterLiteral>(node) || isa<ImplicitValueInitExpr>(node)) return;
     if (const auto* literal = dyn_cast<FloatingLiteral>(node)) {
         const int token = token_at(literal->getBeginLoc());
         if (spelled_type(literal->getType()) != "float" &&
@@ -202,6 +224,10 @@ void Walk::reference(const DeclRefExpr* node)
                             "not values");
     if (!is_users(target)) return;
     const auto* variable = dyn_cast<VarDecl>(target);
+    if (variable && variable == initialised_)
+        complain(node->getBeginLoc(), "'" + own_name(name) +
+                                          "' is read where its first value is computed; declare "
+                                          "it alone (it is then 0), and assign");
     const bool is_static_table = variable && variable->isStaticLocal();
     const DeclContext* home = target->getDeclContext();
     if (isa<EnumConstantDecl>(target)) home = cast<EnumDecl>(home)->getDeclContext();
@@ -356,6 +382,8 @@ void Walk::assignment(const BinaryOperator* node)
     expression(node->getRHS());
     const auto* compound = dyn_cast<CompoundAssignOperator>(node);
     if (!compound) return watch(node->getRHS());
+    if (left->getType()->isEnumeralType())
+        return complain(node->getOperatorLoc(), "an enum is calculated with; use an int");
     bool only_opencl = false;
     std::string function = arithmetic_function(kind, compound->getComputationResultType(), nullptr,
                                                node->getRHS(), {}, only_opencl);

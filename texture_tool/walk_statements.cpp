@@ -15,9 +15,21 @@ void Walk::children(const Stmt* node)
         if (child) statement(child);
 }
 
+// Compilers take minutes over what is nested deeper, and then end for want of a stack.
+bool Walk::is_too_deep(const Stmt* node)
+{
+    constexpr int deepest = 1000;
+    if (depth_ == deepest + 1)
+        complain(node->getBeginLoc(), "this is nested more than " + std::to_string(deepest) +
+                                          " levels deep; split it into functions, or use a table");
+    return depth_ > deepest;
+}
+
 void Walk::statement(const Stmt* node)
 {
-    if (const auto* value = dyn_cast<Expr>(node)) return expression(value);
+    if (const auto* value = dyn_cast<Expr>(node)) return whole_expression(value);
+    const Level level(depth_);
+    if (is_too_deep(node)) return;
     for (const Stmt* child : node->children())
         if (const auto* value = dyn_cast_or_null<Expr>(child))
             if (isa<CompoundStmt, LabelStmt, CaseStmt, DefaultStmt>(node) ||
@@ -120,6 +132,28 @@ bool leaves(const Stmt* node, bool by_break)
 
 }  // namespace
 
+// C has a scope between a loop's head and its body, C++ has none.
+void Walk::redeclared(const ForStmt* loop)
+{
+    const auto* head = dyn_cast_or_null<DeclStmt>(loop->getInit());
+    const auto* body = dyn_cast<CompoundStmt>(loop->getBody());
+    if (!head || !body) return;
+    std::set<llvm::StringRef> names;
+    for (const Decl* declared : head->decls())
+        if (const auto* variable = dyn_cast<VarDecl>(declared)) names.insert(variable->getName());
+    for (const Stmt* inner : body->body()) {
+        const auto* statement = dyn_cast<DeclStmt>(inner);
+        if (!statement) continue;
+        for (const Decl* declared : statement->decls())
+            if (const auto* named = dyn_cast<NamedDecl>(declared))
+                if (names.count(named->getName()))
+                    complain(named->getLocation(),
+                             "'" + own_name(named->getName().str()) +
+                                 "' is declared in the loop's head already; give one of them "
+                                 "another name");
+    }
+}
+
 void Walk::loop(const Stmt* node)
 {
     Loop loop;
@@ -151,6 +185,7 @@ void Walk::loop(const Stmt* node)
                 }
             }
         }
+        redeclared(repeat);
         if (repeat->getInc()) statement_expressions_.insert(repeat->getInc());
         if (const auto* start = dyn_cast_or_null<Expr>(repeat->getInit()))
             statement_expressions_.insert(start);

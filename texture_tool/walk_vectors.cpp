@@ -26,7 +26,7 @@ void Walk::subscript(const ArraySubscriptExpr* node)
     std::string view;
     const Expr* array = base->IgnoreParenImpCasts();
     if (base->getType()->isExtVectorType() || array->getType()->isExtVectorType()) {
-        if (!array->isLValue())
+        if (!array->isLValue() || isa<ExtVectorElementExpr>(array))
             return complain(node->getBeginLoc(),
                             "only a variable's component can be chosen by an index; "
                             "store the vector in a variable first");
@@ -178,6 +178,9 @@ void Walk::choice(const ConditionalOperator* node)
 
 void Walk::initialiser_list(const InitListExpr* node)
 {
+    if (spelled_type(node->getType()) == "sam2D")
+        return complain(node->getBeginLoc(), "images come from the scene; give the texture an "
+                                             "argument of type sam2D");
     if (const InitListExpr* written = node->isSemanticForm() ? node->getSyntacticForm() : node)
         for (const Expr* value : written->inits())
             if (const auto* designated = dyn_cast<DesignatedInitExpr>(value)) {

@@ -201,6 +201,25 @@ class TextureTool(unittest.TestCase):
         self.assertNotIn("evil", read(texture.cl) + read(texture.hpp))
         self.assertEqual(compile_errors(texture), "")
 
+    def test_pragmas_and_byte_order_marks_change_nothing(self):
+        path = write("pragmas.c", "\ufeff#pragma weak system // \\\n    evil\n#pragma pack(1) /*\n*/ float4 oops\n"
+                                  "float4 t(float x) { return (float4)(x); }\n")
+        texture = Texture(path)
+        self.assertEqual(texture.done.returncode, 0, texture.done.stderr)
+        self.assertEqual(texture.done.stderr.count("this #pragma has no effect"), 2)
+        for word in ("weak", "evil", "oops"):
+            self.assertNotIn(word, read(texture.cl) + read(texture.hpp))
+        self.assertEqual(compile_errors(texture), "")
+
+    def test_structs_without_a_name_are_written_in_every_dialect(self):
+        path = write("structs.c", "struct Pair { float a, b; };\n"
+                                  "float sum(const struct Pair p) { return p.a + p.b; }\n"
+                                  "float4 t(float x)\n{\n    struct Pair p = (struct Pair){x, 2};\n"
+                                  "    return (float4)(sum(p) + ((const struct Pair){3, 4}).b);\n}\n")
+        texture = Texture(path)
+        self.assertEqual(texture.done.stderr, "")
+        self.assertEqual(compile_errors(texture), "")
+
     def test_a_file_takes_less_than_a_third_of_a_second(self):
         path = os.path.join(TEXTURES, "everything.c")
         self.assertLess(min(Texture(path).seconds for _ in range(5)), 0.3)

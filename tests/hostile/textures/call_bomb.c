@@ -1,4 +1,4 @@
-// expect: 32:8: the calls of 't' expand to more than 10000; every call is copied into the kernel, use loops
+// expect: 32:8: 't' with all that it calls is longer than 100000 words; every call is copied into the kernel, use loops
 float f0(float x) { return x; }
 float f1(float x) { return f0(x) + f0(x); }
 float f2(float x) { return f1(x) + f1(x); }

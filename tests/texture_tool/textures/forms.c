@@ -13,6 +13,7 @@ static const struct { float a; int b; } rows[2] = { {1, 2}, {3, 4} };
 static const float3 palette[] = { {1, 0, 0}, (float3)(0, 1, 0), 0.5 };
 float smoothstep(float a, float b, float x) { x = clamp((x - a) / (b - a), 0.0f, 1.0f); return x * x * (3 - 2 * x); }
 void split(float x, float *whole, float* part) { *whole = floor(x); *part = x - *whole; }
+float exchange(float* old, float by) { float was = *old; *old = by; return was; }
 void fill(float out[4], int n) { for (int i = 0; i < n; i++) out[i] = i; }
 float nothing(float x) { if (x > 0) return 1; }
 struct Cell make(float2 at) { struct Cell c = { at, 3, {1, 2, 3} }; c.w[1] += 2; return c; }
@@ -27,7 +28,7 @@ float4 userProc(float3 class, float PI, int n, uint u)
     float2 new = (float2)(u, n);
     v *= 2.0; v += u; v = 2 * v; v = v * n;
     v.xy = v.yx; v.zw += 1; v.s0 = 3; v.x++;
-    float w, p; split(v.x, &w, &p);
+    float w, p; split(v.x, &w, &p); p += exchange(&w, w + 1); w = exchange(&w, p) + p;
     float a[4], z[2][3]; fill(a, 4);
     z[1][n] = a[n & 3]; z[n][2] = 1;
     struct Cell c = make(new), d; d = c;
@@ -50,10 +51,10 @@ float4 userProc(float3 class, float PI, int n, uint u)
     v[n] = 2; float vv = v[1] + v[n];
     bool yes = n > 2; yes = !yes;
     const int idx[3] = {2, 1, 0};
-    float m4 = final(3) + EPS + PI + M_PI + rows[n & 1].a + palette[k].x + palette[idx[i]].y + nothing(m4);
+    float m4 = final(3) + EPS + PI + M_PI + rows[n & 1].a + palette[k].x + palette[idx[i]].y + nothing(p);
     long big = n * 3L; ulong bb = (ulong)u << 3;
     v.lo = v.hi; v.even = v.odd; float8 f8 = 0; f8.s7 = 2; f8.lo = v; v = f8.hi;
     float q1 = (float)n / u, q2 = n ? 1 : 2.5; q1 = fmax(q1, 0), q2 = pow(q2, 2); q1 = max(q1, 0.0f) + min(3, n);
-    v = (float4)(v.xy, (float2)(0)) + (float4)(class, 1) + (float4)(1);
+    v = (float4)(v.xy, 0, 0) + (float4)(class, 1) + (float4)(1);
     return v + (float4)(s, bits(1)) + f0() + c.w[k] + z[0][0] + d.at.x + si + fr + fo.x + fw.y + (n, 3) + hypot(1.0f, 2.0f) + q1 + q2 + smoothstep(1, 0, 0.5) + abs(n) + (INFINITY > FLT_MAX) + isnan((float)NAN) + vv + yes + (big & 7) + (bb & 7) + ch + sh + (uu & 255) + m4 + i2.x;
 }
