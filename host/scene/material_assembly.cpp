@@ -113,6 +113,11 @@ void SceneAssembly::assemble_images()
         }
         picture = Picture{};
     }
+    if (data_.images.empty()) {  // kernels read a texel first, and then choose
+        data_.images.push_back({1, 1, 0, TEXELS_8_LINEAR});
+        data_.texels_8.push_back(0xffffffffu);
+        data_.texture_slots.push_back({});
+    }
     if (bad_texels > 0) {
         data_.notices.push_back(fmt::format("textures: {} values were NaN, infinite or negative; "
                                             "they were replaced",

@@ -34,7 +34,7 @@ SHARED float4 tx_stack(const TextureContext* tx, int slot)
 }
 SHARED float4 tx_sample(const TextureContext* tx, sam2D image, float2 uv)
 {
-    return TX_NEW(float4, uv.x, uv.y, tx->place.x, (float)(image.slot & 3));
+    return TX_NEW(float4, uv.x, uv.y, tx->place.x, (float)(image.number & 3));
 }
 SHARED float4 tx_sample_flags(const TextureContext* tx, sam2D image, float2 uv, uint flags)
 {

@@ -70,5 +70,5 @@ SHARED float4 tx_sample(const TextureContext* tx, sam2D image, float2 uv)
 {
     const float u = tx_fraction_float(uv.x);
     const float v = tx_fraction_float(uv.y);
-    return TX_NEW(float4, u, v, u * v, 1.0f + 0.0f * (float)(image.slot + tx->budget));
+    return TX_NEW(float4, u, v, u * v, 1.0f + 0.0f * (float)(image.number + tx->budget));
 }

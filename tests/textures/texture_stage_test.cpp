@@ -68,6 +68,19 @@ TEST_P(Textures, TX_1_ConstantColoursTheSurface)
     EXPECT_TRUE(laws::obeys(measure(data), 0.2));
 }
 
+// In a scene that has no image at all, too.
+TEST_P(Textures, AnImageThatNobodyGaveIsWhite)
+{
+    SceneBuilder scene;
+    const int function = scene.add_texture_function(
+        handwritten("t0", {},
+                    "    sam2D none = {0};\n"
+                    "    return tx_sample(tx, none, TX_NEW(float2, 0.25f, 0.75f)) * 0.5f;"));
+    const int n = scene.add_texture_node({"none", function, {}});
+    const SceneData data = furnace(scene, {.base_texture = node(n)});
+    EXPECT_TRUE(laws::obeys(measure(data), 0.5));
+}
+
 TEST_P(Textures, TX_5_OneCopyOfCodeHasARegionForEachUse)
 {
     SceneBuilder scene;

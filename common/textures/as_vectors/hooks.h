@@ -58,7 +58,7 @@ SHARED float tx_setting_Samples(const TextureContext* tx)
 // Linear colour, alpha straight, with the image's own wrapping and filter.
 SHARED float4 tx_sample(const TextureContext* tx, sam2D sampler, float2 uv)
 {
-    const TextureValue texel = texture_texel(tx->scene, sampler.slot, uv.x, uv.y);
+    const TextureValue texel = texture_texel(tx->scene, sampler.number - 1, uv.x, uv.y);
     return TX_NEW(float4, texel.r, texel.g, texel.b, texel.a);
 }
 
@@ -69,7 +69,7 @@ SHARED float4 tx_sample_flags(const TextureContext* tx, sam2D sampler, float2 uv
     const int wrap_v = (flags & TX_FETCH_CLAMP_V) != 0u ? WRAP_CLAMP : WRAP_REPEAT;
     const int filter = (flags & TX_FETCH_POINT) != 0u ? TEXTURE_NEAREST : TEXTURE_LINEAR;
     const TextureValue texel =
-        texture_fetch(tx->scene, sampler.slot, uv.x, uv.y, wrap_u + 4 * wrap_v, filter);
+        texture_fetch(tx->scene, sampler.number - 1, uv.x, uv.y, wrap_u + 4 * wrap_v, filter);
     return TX_NEW(float4, texel.r, texel.g, texel.b, texel.a);
 }
 

@@ -33,7 +33,7 @@ SHARED uint tx_load_uint(TextureContext* tx, int at) { return tx_word(tx, at); }
 SHARED sam2D tx_load_sam2D(TextureContext* tx, int at)
 {
     sam2D image;
-    image.slot = (int)tx_word(tx, at);
+    image.number = (int)tx_word(tx, at) + 1;
     return image;
 }
 #define TX_LOADS(T)                                                                                \

@@ -4,7 +4,7 @@
 #include "common/user_language/as_vectors/vector_functions.h"
 
 typedef struct {
-    int slot;  // of the scene's texture slots; -1: white
+    int number;  // of the scene's texture slots, from 1; 0, what nobody set: white
 } sam2D;
 typedef sam2D sampler2D;
 
