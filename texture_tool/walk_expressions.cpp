@@ -146,7 +146,9 @@ void Walk::expression(const Expr* node)
     if (const auto* value = dyn_cast<ConditionalOperator>(node)) return choice(value);
     if (const auto* value = dyn_cast<InitListExpr>(node)) return initialiser_list(value);
     if (const auto* value = dyn_cast<MemberExpr>(node)) return member(value);
-    if (isa<ParenExpr>(node) || isa<ConstantExpr>(node)) {
+    if (const auto* constant = dyn_cast<ConstantExpr>(node))
+        return initialiser(constant->getSubExpr(), true);
+    if (isa<ParenExpr>(node)) {
         if (statement_expressions_.count(node))
             for (const Stmt* child : node->children()) statement_expressions_.insert(child);
         return children(node);
@@ -336,6 +338,10 @@ void Walk::binary(const BinaryOperator* node)
                             "name[i]");
     expression(node->getLHS());
     expression(node->getRHS());
+    if (in_constant_ && node->isShiftOp() && !interval_of(node->getRHS()).is_within(0, 31))
+        return complain(node->getOperatorLoc(),
+                        "a constant is shifted by more than 31 or less than 0, which compilers "
+                        "take differently; write its value");
     bool only_opencl = false;
     const std::string function =
         arithmetic_function(kind, node->getType(), node->getLHS(), node->getRHS(), {}, only_opencl);
@@ -346,11 +352,7 @@ void Walk::binary(const BinaryOperator* node)
                  "that is not int or uint; convert the operands to int");
         return;
     }
-    if (is_constant(node)) {
-        Expr::EvalResult right;
-        if ((kind == BO_Div || kind == BO_Rem) && false) return;
-        return;
-    }
+    if (only_opencl && is_constant(node)) return;
     Expr::EvalResult divisor;
     if ((kind == BO_Div || kind == BO_Rem) && node->getRHS()->EvaluateAsInt(divisor, context_) &&
         divisor.Val.getInt() == 0)

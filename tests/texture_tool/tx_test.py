@@ -201,6 +201,29 @@ class TextureTool(unittest.TestCase):
         self.assertNotIn("evil", read(texture.cl) + read(texture.hpp))
         self.assertEqual(compile_errors(texture), "")
 
+    def test_what_c_leaves_open_has_the_documented_result(self):
+        path = write("open.c", """
+float nothing(float x) { if (x > 1e30f) return 7; }
+float4 t(void)
+{
+    int zero = (int)(readAttr("WorldPos").x * 0.0f), low = -2147483647 - 1, unset;
+    float nan = sqrt(zero - 1.0f);
+    int good = unset == 0 && nothing(zero) == 0 && low - 1 + zero == 2147483647 && -low == low;
+    good = good && 7 / zero == 0 && 7 % zero == 7 && low / (zero - 1) == low && low % (zero - 1) == 0;
+    good = good && 1 << (zero + 33) == 2 && low >> (zero + 35) == low >> 3 && 1 << -1 == low;
+    good = good && (int)1e20f == 2147483647 && (int)-1e20f == low && (int)-1.5f == -1 && (int)nan == 0;
+    good = good && (uint)-5.0f == 0 && (uint)1e20f == 4294967295u && (uint)nan == 0;
+    return good && smoothstep(1.0f, 0.0f, 0.25f) == 0.84375f && smoothstep(1.0f, 1.0f, 2.0f) == 1 ? 1.0f : 0.0f;
+}
+""")
+        texture = Texture(path, name="texture")
+        program = os.path.join(SCRATCH, "open")
+        done = run(["g++", "-std=c++20", "-O1", "-w", "-fwrapv", "-ffp-contract=off", "-DALWAYS_INLINE=", f"-I{ROOT}",
+                    f"-I{ROOT}/common/as_cpp", f'-DTEXTURE_TEXT="{texture.hpp}"', "-o", program,
+                    os.path.join(ROOT, "tests/texture_tool/foreign_program.cpp")])
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(set(run([program]).stdout.splitlines()), {"1 1 1 1 0 0"})
+
     def test_pragmas_and_byte_order_marks_change_nothing(self):
         path = write("pragmas.c", "\ufeff#pragma weak system // \\\n    evil\n#pragma pack(1) /*\n*/ float4 oops\n"
                                   "float4 t(float x) { return (float4)(x); }\n")

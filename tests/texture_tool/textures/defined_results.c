@@ -20,6 +20,7 @@ float4 defined(float scale)
     sum += n / zero + n % zero + (low + zero) / (zero - 1) + (low + zero) % (zero - 1);
     sum ^= (n << (n & 127)) ^ (n >> (zero + 33)) ^ (n * n * 15731 + 789221);
     sum += table[n] + at(table, -n) + missing(n);
+    sum ^= (1 << -1) ^ (n << -1) ^ (7 >> 33) ^ (low / -1) ^ (low % -1);
     n++; n += n; n *= n; n -= 7; n = -n; n /= zero; --n;
     uint u = (uint)(p.z * -5.0f) + (uint)1e20f + 7u / (uint)zero;
     int spins = 0;
