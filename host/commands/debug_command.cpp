@@ -80,6 +80,27 @@ std::string quoted(const std::string& word)
     return text + "'";
 }
 
+// As gdb reads it, for which what follows " if " in a plain place is an expression to compute.
+std::string gdb_breakpoint(const DebugStop& stop)
+{
+    if (stop.line == 0) return "break " + stop.function;
+    if (quoted(stop.file) == stop.file) return fmt::format("break {}:{}", stop.file, stop.line);
+    const bool has_quote = stop.file.find('\'') != std::string::npos;
+    if (has_quote && stop.file.find_first_of(" \t\n\v\f\r") != std::string::npos)
+        throw std::runtime_error(stop.file + ": gdb cannot be told of a file with both a quote and "
+                                             "a space in its name; rename it, or use lldb");
+    return has_quote ? fmt::format("break {}:{}", stop.file, stop.line)
+                     : fmt::format("break -source '{}' -line {}", stop.file, stop.line);
+}
+
+std::string lldb_breakpoint(const DebugStop& stop)
+{
+    if (stop.line == 0) return "breakpoint set --name " + stop.function;
+    std::string file;
+    for (const char c : stop.file) file += c == '\'' ? std::string("'\"'\"'") : std::string(1, c);
+    return fmt::format("breakpoint set --file '{}' --line {}", file, stop.line);
+}
+
 std::string node_of(const DebugCommand& command)
 {
     std::string node;
@@ -91,6 +112,22 @@ std::string node_of(const DebugCommand& command)
         node = texture;
     }
     return node;
+}
+
+// The node that was asked for; without a name, the only one.
+std::string node_in_use(const SceneData& scene, const std::string& asked)
+{
+    std::set<std::string> names;
+    for (const TextureAttachment& attachment : scene.textures.attachments)
+        names.insert(attachment.node);
+    if (asked.empty() && names.size() == 1) return *names.begin();
+    if (names.count(asked)) return asked;
+    throw std::runtime_error(
+        asked.empty()
+            ? "--texture NODE: name the texture node to stop in; in use: " + node_names(scene, -1)
+            : fmt::format("--texture {}: nothing in the scene uses such a texture node; "
+                          "in use: {}",
+                          asked, node_names(scene, -1)));
 }
 
 // What the debugger runs: the command line as it came, of `diptych render`, for one pixel.
@@ -137,9 +174,7 @@ json launch_configuration(const DebugCommand& command, const DebugStop& stop,
                           const std::vector<std::string>& program)
 {
     json setup = json::array();
-    for (const std::string& text : {std::string("set breakpoint pending on"),
-                                    stop.line > 0 ? fmt::format("break {}:{}", stop.file, stop.line)
-                                                  : "break " + stop.function})
+    for (const std::string& text : {std::string("set breakpoint pending on"), gdb_breakpoint(stop)})
         setup.push_back({{"text", text}});
     return {{"name", fmt::format("diptych: {} at {}", node_of(command), command.pixel)},
             {"type", "cppdbg"},
@@ -241,13 +276,10 @@ int replay(const DebugCommand& command, SceneFlags flags)
 
 }  // namespace
 
-DebugStop find_stop(SceneData& scene, const std::string& node, int x, int y, int line)
+DebugStop find_stop(SceneData& scene, const std::string& asked, int x, int y, int line)
 {
     const SceneTextures& textures = scene.textures;
-    if (node.empty() || !std::ranges::count(textures.attachments, node, &TextureAttachment::node))
-        throw std::runtime_error(fmt::format("--texture {}: nothing in the scene uses such a "
-                                             "texture node; in use: {}",
-                                             node.empty() ? "NODE" : node, node_names(scene, -1)));
+    const std::string node = node_in_use(scene, asked);
     scene.settings.at(0).max_bounces = 0;
     const int material = material_at(scene, x, y);
     if (material < 0)
@@ -295,15 +327,7 @@ std::vector<std::string> debugger_command(const std::string& debugger, const Deb
     const auto add = [&](const std::string& command) {
         words.insert(words.end(), {is_lldb ? "-o" : "-ex", command});
     };
-    const auto stop_here = [&] {
-        if (is_lldb)
-            add(stop.line > 0
-                    ? fmt::format("breakpoint set --file '{}' --line {}", stop.file, stop.line)
-                    : "breakpoint set --name " + stop.function);
-        else
-            add(stop.line > 0 ? fmt::format("break {}:{}", stop.file, stop.line)
-                              : "break " + stop.function);
-    };
+    const auto stop_here = [&] { add(is_lldb ? lldb_breakpoint(stop) : gdb_breakpoint(stop)); };
     if (!is_lldb) words.insert(words.end(), {"-q", "-iex", "set debuginfod enabled off"});
     if (!commands.empty()) words.push_back(is_lldb ? "--batch" : "-batch");
     if (!is_lldb) {

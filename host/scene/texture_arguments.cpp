@@ -140,8 +140,10 @@ void check_node(const TextureNode& node, const TextureFunction& function)
     }
     for (const TextureArgument& argument : function.arguments)
         if (!node.arguments.count(argument.name))
-            fail(node, fmt::format("its argument {} {} is missing; give it a value",
-                                   type_of(argument), argument.name));
+            fail(node,
+                 fmt::format("its argument {} {} is missing; give it a value: --set {}.{}=JSON, "
+                             "in the scene, or as a default in the file's comment",
+                             type_of(argument), argument.name, node.name, argument.name));
 }
 
 int stride_of(const TextureArgument& argument)

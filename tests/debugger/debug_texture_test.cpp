@@ -3,6 +3,7 @@
 #include "tests/debugger/textured_scene.hpp"
 
 #include "tests/host/commands/program.hpp"
+#include "tests/textures/planted_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -118,6 +119,42 @@ TEST_F(DebugTexture, StopsForTheNodeThatWasNamed)
     EXPECT_NE(left.out.find("scale = 2"), std::string::npos) << left.text();
     const Outcome paint = debug({"--pixel", "12,8", "--texture", "paint"}, {"info args"});
     EXPECT_NE(paint.out.find("scale = 7"), std::string::npos) << paint.text();
+}
+
+TEST_F(DebugTexture, StopsInTheOnlyNodeWithoutItsName)
+{
+    if (const std::string why = why_no_debugger("gdb"); !why.empty()) GTEST_SKIP() << why;
+    write_planted_scene(folder_, "float planted(float x)\n{\n    return x * 0.5f;\n}\n",
+                        {{"x", 0.75}});
+    std::vector<std::string> words = {
+        "debug", folder_ / "scene.gltf", "--pixel", "8,4", "--execute", "info args"};
+    words.insert(words.end(), planted_view.begin(), planted_view.end());
+    const Outcome outcome = run_diptych(words, options());
+    EXPECT_NE(outcome.out.find("planted.c:3"), std::string::npos) << outcome.text();
+    EXPECT_NE(outcome.out.find("x = 0.75"), std::string::npos) << outcome.text();
+}
+
+// A name that a debugger could take for a condition, or for the end of a word.
+TEST_F(DebugTexture, StopsInFilesOfAnyName)
+{
+    for (const auto& [debugger, name, command] :
+         {std::array<std::string, 3>{"gdb", "x if 1.c", "print by"},
+          std::array<std::string, 3>{"gdb", "it's.c", "print by"},
+          std::array<std::string, 3>{"lldb", "it's so.c", "frame variable by"}}) {
+        if (const std::string why = why_no_debugger(debugger); !why.empty()) continue;
+        folder_.write(name, "// by (float; default 0.75): a factor\nfloat odd(float by)\n{\n"
+                            "    return by * by;\n}\n");
+        const Outcome outcome = debug({"--texture", "*.baseColor=" + (folder_ / name), "--texture",
+                                       name.substr(0, name.size() - 2), "--pixel", "12,8", "--line",
+                                       "4", "--debugger", debugger, "--execute", command});
+        EXPECT_NE(outcome.out.find(" = 0.75"), std::string::npos) << name << outcome.text();
+    }
+    folder_.write("it's a.c", "float odd(void)\n{\n    return 1;\n}\n");
+    const Outcome refused =
+        debug({"--texture", "*.baseColor=" + (folder_ / "it's a.c"), "--texture", "it's a",
+               "--pixel", "12,8", "--line", "3", "--print"});
+    EXPECT_EQ(refused.exit_code, 2) << refused.text();
+    EXPECT_NE(refused.err.find("it's a.c: gdb cannot be told"), std::string::npos) << refused.err;
 }
 
 TEST_F(DebugTexture, GdbStepsFromLineToLineAndIntoTheTexturesOwnFunctions)

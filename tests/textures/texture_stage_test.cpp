@@ -303,8 +303,10 @@ TEST(TextureGraph, TX_7_ASharedNodeIsOneStepAndSlotsAreFreed)
 TEST(TextureGraph, WrongArgumentsAreNamed)
 {
     const MaterialInput material{.base_texture = node(0)};
-    EXPECT_EQ(refusal({{"n", 0, {}}}, material),
-              "texture node n: its argument float4 a is missing; give it a value");
+    EXPECT_EQ(
+        refusal({{"n", 0, {}}}, material),
+        "texture node n: its argument float4 a is missing; give it a value: --set n.a=JSON, in "
+        "the scene, or as a default in the file's comment");
     EXPECT_EQ(refusal({{"n", 0, {{"a", {.numbers = {1, 2}}}}}}, material),
               "texture node n: its argument a is of type float4, but has 2 numbers; give it 4");
     EXPECT_EQ(refusal({{"n", 0, {{"b", {.numbers = {1}}}}}}, material),

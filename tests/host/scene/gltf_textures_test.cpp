@@ -198,7 +198,8 @@ const Hostile hostile[] = {
     {"arguments is a list", [](json& e) { e["nodes"][1]["arguments"] = {1}; },
      ".nodes[1].arguments: must be an object"},
     {"argument is missing", [](json& e) { e["nodes"][1]["arguments"].erase("tint"); },
-     "texture node paint: its argument float3 tint is missing; give it a value"},
+     "texture node paint: its argument float3 tint is missing; give it a value: --set "
+     "paint.tint=JSON, in the scene, or as a default in the file's comment"},
     {"unknown argument", [](json& e) { e["nodes"][1]["arguments"]["hue"] = 1; },
      "userProc has no argument hue; it takes: float scale, int count"},
     {"argument is text", [](json& e) { e["nodes"][1]["arguments"]["scale"] = "2"; },
