@@ -39,6 +39,10 @@ constexpr unsigned variants[] = {
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_PROCEDURAL,
     EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
         EFFECT_PROCEDURAL,
+    // without the last two g++ leaves evaluate_surface scalar
+    EFFECT_EMISSION | EFFECT_SMOOTH_NORMALS | EFFECT_SPECULAR | EFFECT_ENVIRONMENT |
+        EFFECT_BASE_TEXTURE | EFFECT_SURFACE_TEXTURES | EFFECT_NORMAL_MAP | EFFECT_PROCEDURAL |
+        EFFECT_INSTANCES | EFFECT_FLOAT_TEXTURES,
     ~unsigned(EFFECT_PROCEDURAL_EMISSION | EFFECT_PROCEDURAL_ALPHA),
     ~0u,
 };
@@ -47,28 +51,38 @@ constexpr unsigned variants[] = {
 #if VECTORISED
 #define OVER_PATHS _Pragma("omp simd")
 #define EFFECTS_OF(variant, view) variants[variant]
-int variant_for(unsigned effects)
+constexpr int variant_for(unsigned effects)
 {
     int k = 0;
-    effects &= ~unsigned(EFFECT_TEXTURE_OCCLUSION | ASIDE_EFFECTS);  // which no such loop asks
     while ((effects & ~variants[k]) != 0) ++k;
     return k;
 }
-// Only the surface's evaluation reads what textures gave: the other stages run as without them.
-unsigned effects_for(Stage stage, unsigned effects)
+// Without effects that no loop asks of the scene, only walks and users' code, and without those
+// that one other stage alone asks.
+constexpr unsigned effects_for(Stage stage, unsigned effects)
 {
-    return stage == STAGE_evaluate_surface ? effects : effects & ~unsigned(EFFECT_PROCEDURAL);
+    effects &= ~unsigned(EFFECT_ALPHA | EFFECT_TEXTURE_OCCLUSION | ASIDE_EFFECTS);
+    if (stage != STAGE_generate_paths) effects &= ~unsigned(EFFECT_ORTHOGRAPHIC);
+    if (stage != STAGE_decide_alpha) effects &= ~unsigned(EFFECT_PROCEDURAL_ALPHA);
+    if (stage != STAGE_evaluate_surface) effects &= ~unsigned(EFFECT_PROCEDURAL);
+    if (stage != STAGE_sample_light)
+        effects &= ~unsigned(EFFECT_PUNCTUAL_LIGHTS | EFFECT_PROCEDURAL_EMISSION);
+    return effects;
+}
+constexpr int variant_of(Stage stage, unsigned effects)
+{
+    return variant_for(effects_for(stage, effects));
 }
 unsigned covered_effects(unsigned effects)
 {
-    return variants[variant_for(effects)] |
-           variants[variant_for(effects_for(STAGE_sample_light, effects))];
+    unsigned covered = 0;
+    for (int stage = 0; stage < STAGE_COUNT; ++stage)
+        covered |= variants[variant_of(Stage(stage), effects)];
+    return covered;
 }
 #else
 #define OVER_PATHS
 #define EFFECTS_OF(variant, view) (view).effects
-int variant_for(unsigned) { return variant_count - 1; }
-unsigned effects_for(Stage, unsigned effects) { return effects; }
 unsigned covered_effects(unsigned effects) { return effects; }
 #endif
 
@@ -102,14 +116,16 @@ ENTRY_walk(intersect) ENTRY_walk(occlusion) ENTRY_walk(trace_texture_rays)
 
     StageLoop loop_of(Stage stage, unsigned effects)
 {
-    const int variant = variant_for(effects_for(stage, effects));
 #if VECTORISED
-#define LOOPS_OF(name)                                                                   \
-    static constexpr StageLoop name##_loops[] = {                                        \
-        name##_loop<0>, name##_loop<1>, name##_loop<2>, name##_loop<3>, name##_loop<4>,  \
-        name##_loop<5>, name##_loop<6>, name##_loop<7>, name##_loop<8>, name##_loop<9>}; \
-    static_assert(std::size(name##_loops) == variant_count);                             \
-    if (stage == STAGE_##name) return name##_loops[variant];
+    // Variants that differ in what the stage does not ask are one loop.
+#define LOOP_OF(name, k) name##_loop<variant_of(STAGE_##name, variants[k])>
+#define LOOPS_OF(name)                                                          \
+    static constexpr StageLoop name##_loops[] = {                               \
+        LOOP_OF(name, 0), LOOP_OF(name, 1), LOOP_OF(name, 2), LOOP_OF(name, 3), \
+        LOOP_OF(name, 4), LOOP_OF(name, 5), LOOP_OF(name, 6), LOOP_OF(name, 7), \
+        LOOP_OF(name, 8), LOOP_OF(name, 9), LOOP_OF(name, 10)};                 \
+    static_assert(std::size(name##_loops) == variant_count);                    \
+    if (stage == STAGE_##name) return name##_loops[variant_of(STAGE_##name, effects)];
 #else
 #define LOOPS_OF(name) \
     if (stage == STAGE_##name) return name##_loop<variant_count - 1>;
@@ -123,7 +139,7 @@ ENTRY_walk(intersect) ENTRY_walk(occlusion) ENTRY_walk(trace_texture_rays)
     if (stage == STAGE_occlusion) return occlusion_loop;
     if (stage == STAGE_trace_texture_rays) return trace_texture_rays_loop;
 #endif
-    (void)variant;
+    (void)effects;
     return nullptr;
 }
 
