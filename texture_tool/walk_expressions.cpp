@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "texture_tool/language.hpp"
-#include "texture_tool/order.hpp"
 
 namespace texture_tool {
 
@@ -119,15 +118,6 @@ const Parameter* Walk::parameter_named(const Expr* node) const
     const auto found = parameter_numbers_.find(declaration);
     if (!declaration || found == parameter_numbers_.end()) return nullptr;
     return &description_.functions[found->second.first].parameters[found->second.second];
-}
-
-void Walk::whole_expression(const Expr* node)
-{
-    expression(node);
-    if (const Order::Clash clash = Order().clash_in(node); clash.variable)
-        complain(clash.at->getExprLoc(), "'" + own_name(clash.variable->getName().str()) +
-                                             "' is changed and used here in an order that "
-                                             "compilers choose; use a statement for each");
 }
 
 void Walk::expression(const Expr* node)

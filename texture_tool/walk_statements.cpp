@@ -4,6 +4,7 @@
 #include <clang/Basic/SourceManager.h>
 
 #include "texture_tool/loop_bounds.hpp"
+#include "texture_tool/order.hpp"
 
 namespace texture_tool {
 
@@ -23,6 +24,15 @@ bool Walk::is_too_deep(const Stmt* node)
         complain(node->getBeginLoc(), "this is nested more than " + std::to_string(deepest) +
                                           " levels deep; split it into functions, or use a table");
     return depth_ > deepest;
+}
+
+void Walk::whole_expression(const Expr* node)
+{
+    expression(node);
+    if (const Order::Clash clash = Order().clash_in(node); clash.variable)
+        complain(clash.at->getExprLoc(), "'" + own_name(clash.variable->getName().str()) +
+                                             "' is changed and used here in an order that "
+                                             "compilers choose; use a statement for each");
 }
 
 void Walk::statement(const Stmt* node)

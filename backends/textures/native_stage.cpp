@@ -30,6 +30,10 @@ constexpr const char* entry_name = "diptych_evaluate_textures";
 constexpr const char* watch_name = "diptych_watch_textures";
 std::atomic<unsigned long> compilations{0};
 
+// Of a compiler over one texture; a second and 300 MiB are usual.
+constexpr int most_seconds = 120;
+constexpr int most_gibibytes = 4;
+
 // A name that no other thread or process has, beside the file that it becomes.
 fs::path unfinished(const fs::path& file)
 {
@@ -99,11 +103,11 @@ void add_flags_of_gcc(const std::string& program, std::vector<std::string>& flag
         if (are_all_known || are_known({&flag, 1})) flags.push_back(flag);
 }
 
-// A host that runs under the address sanitizer has users' code watched too.
-#if defined(__SANITIZE_ADDRESS__)
-const std::vector<std::string> sanitizer = {"-fsanitize=address", "-fno-omit-frame-pointer"};
+// Those of the host, if it runs under any: users' code is watched too.
+#ifdef DIPTYCH_SANITIZERS
+const std::vector<std::string> sanitizers = {DIPTYCH_SANITIZERS, "-fno-omit-frame-pointer"};
 #else
-const std::vector<std::string> sanitizer = {};
+const std::vector<std::string> sanitizers = {};
 #endif
 
 bool is_in_lanes(const NativeStageOptions& options)
@@ -128,7 +132,7 @@ std::vector<std::string> flags_for(const NativeStageOptions& options)
                                       "-fno-strict-aliasing",
                                       "-fopenmp-simd",
                                       std::string("-DDIALECT_") + (is_double ? "double" : "float")};
-    flags.insert(flags.end(), sanitizer.begin(), sanitizer.end());
+    flags.insert(flags.end(), sanitizers.begin(), sanitizers.end());
     if (options.kind == NativeStageKind::silent) {
         flags.insert(flags.end(), {"-O1", "-DALWAYS_INLINE="});
         return flags;
@@ -136,6 +140,10 @@ std::vector<std::string> flags_for(const NativeStageOptions& options)
     flags.push_back("-g");
     if (options.is_debug) {
         flags.insert(flags.end(), {"-O0", "-DALWAYS_INLINE="});
+        return flags;
+    }
+    if (!sanitizers.empty()) {
+        flags.insert(flags.end(), {"-O1", "-DALWAYS_INLINE="});
         return flags;
     }
     flags.push_back("-DALWAYS_INLINE=__attribute__((always_inline))");
@@ -222,10 +230,14 @@ void make(std::vector<std::string> command, const fs::path& object, const fs::pa
     fs::create_directories(object.parent_path());
     const fs::path part = unfinished(object);
     command.insert(command.end(), {"-o", part.string()});
-    const Finished done = run_program(command);
+    const Finished done = run_program_within(most_seconds, most_gibibytes, command);
     if (done.exit_code != 0) {
         std::error_code ignored;
         fs::remove(part, ignored);
+        if (done.seconds > 0.9 * most_seconds)
+            throw std::runtime_error("procedural textures: " + command[0] + " was stopped after " +
+                                     std::to_string(most_seconds) + " s over " +
+                                     functions.string() + "; make that texture's code shorter");
         throw std::runtime_error("procedural textures: " + command[0] +
                                  " refuses the generated code (" + functions.string() + "):\n" +
                                  done.output);
@@ -295,7 +307,7 @@ void compile_lanes(const std::string& program, const std::vector<Source>& source
         objects[k] = made.string();
     });
     std::vector<std::string> command = {program, "-shared"};
-    command.insert(command.end(), sanitizer.begin(), sanitizer.end());
+    command.insert(command.end(), sanitizers.begin(), sanitizers.end());
     command.insert(command.end(), objects.begin(), objects.end());
     make(command, object, object.parent_path() / "functions.hpp");
 }

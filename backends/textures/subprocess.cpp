@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <spawn.h>
 #include <stdexcept>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -53,10 +54,25 @@ Finished run_program(const std::vector<std::string>& arguments)
     if (error != 0)
         throw std::runtime_error(arguments[0] + ": cannot be started: " + std::strerror(error));
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    rusage used{};
+    while (wait4(child, &status, 0, &used) < 0 && errno == EINTR) {
     }
+    finished.seconds = double(used.ru_utime.tv_sec) + 1e-6 * double(used.ru_utime.tv_usec);
     finished.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     return finished;
+}
+
+Finished run_program_within(int seconds, int gibibytes, const std::vector<std::string>& arguments)
+{
+    // The shell sets limits and becomes the program, whose words it does not read.
+    std::vector<std::string> limited = {"/bin/sh",
+                                        "-c",
+                                        "ulimit -t \"$1\"; ulimit -v \"$2\"; shift 2; exec \"$@\"",
+                                        "limits",
+                                        std::to_string(seconds),
+                                        std::to_string(gibibytes << 20)};
+    limited.insert(limited.end(), arguments.begin(), arguments.end());
+    return run_program(limited);
 }
 
 std::string find_program(const std::string& name)

@@ -1,5 +1,6 @@
 // What textures may reach, and what a new one costs: claims TX-2 and TX-14 of the paper.
 #include "backends/textures/native_stage.hpp"
+#include "backends/textures/subprocess.hpp"
 #include "common/as_cpp/texture_rows.hpp"
 #include "host/commands/trace_comparison.hpp"
 #include "host/render/render.hpp"
@@ -189,6 +190,21 @@ TEST_P(TextureClaims, TX_14_ANewTextCompilesTheTextureStageAlone)
     options.samples = 64;
     const std::array<float, 3> seen = render(*backend_, edited, options).film.radiance(8, 8);
     EXPECT_NEAR(seen[1], 0.125f, 0.005f);  // a pixel of 64 samples: four standard errors
+}
+
+// Compilers of what strangers wrote.
+TEST(TextureCompilers, EndWhenTheyTakeTooLongOrTooMuch)
+{
+    const Finished endless = run_program_within(1, 1, {"sh", "-c", "while :; do :; done"});
+    EXPECT_NE(endless.exit_code, 0);
+    EXPECT_GT(endless.seconds, 0.9);
+    EXPECT_LT(endless.seconds, 5);
+    const Finished large =
+        run_program_within(20, 1, {"sh", "-c", "head -c 3000000000 /dev/zero | tail -n 1"});
+    EXPECT_NE(large.output, "") << "no word of memory that ran out";
+    const Finished words = run_program_within(1, 1, {"echo", "$(id) '\"\\", "a;b"});
+    EXPECT_EQ(words.output, "$(id) '\"\\ a;b\n");
+    EXPECT_EQ(words.exit_code, 0);
 }
 
 // In lanes each function is a loop of its own, in two forms: an edit leaves those of others alone.
