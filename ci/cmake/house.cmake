@@ -9,6 +9,13 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(HOUSE_WARNINGS -Wall -Wextra -Wpedantic -Werror)
 set(HOUSE_ARITHMETIC -ffp-contract=off -fno-math-errno -fno-trapping-math)
 
+# The flags by which this build is watched by the address and undefined-behaviour sanitizers; none, as a rule.
+string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
+string(REGEX MATCHALL "-f[a-z-]*sanitize[^ ]*" HOUSE_SANITIZERS "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}}")
+if(HOUSE_SANITIZERS MATCHES "thread")
+  set(HOUSE_SANITIZERS)
+endif()
+
 # house_library(NAME sources...): a static library with the house's warnings and include root.
 function(house_library name)
   add_library(${name} STATIC ${ARGN})
