@@ -42,7 +42,7 @@ void tell_what_is_missing(const std::vector<Slice>& slices)
     }
 }
 
-image::Picture picture_of(const Checkpoint& checkpoint, const Viewer& viewer)
+image::Picture picture_of(const Checkpoint& checkpoint, const image::Viewer& viewer)
 {
     image::Picture picture = picture_of(checkpoint.film, viewer);
     picture.metadata["program"] = checkpoint.head.subject.program;

@@ -50,14 +50,14 @@ struct Tally {
     double covered = 0;
 };
 
-Tally compare_block(const Film& film, const Film& again, const Viewer& viewer, double bar)
+Tally compare_block(const Film& film, const Film& again, const image::Viewer& viewer, double bar)
 {
     Tally tally;
     const Window& window = again.data().window;
     for (int y = window.y; y < window.y + window.height; ++y)
         for (int x = window.x; x < window.x + window.width; ++x) {
-            const double error = double(visible_difference(
-                film.radiance(x, y), again.radiance(x, y), texture_contrast(film, x, y), viewer));
+            const double error = double(
+                image::visible_difference(film.radiance(x, y), again.radiance(x, y), viewer));
             const double noise = double(pixel_error(again, x, y, viewer));
             const bool is_within = error <= bar;
             const bool is_predicted = double(pixel_bound(film, x, y, viewer)) <= bar;

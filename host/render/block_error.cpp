@@ -6,13 +6,6 @@
 namespace diptych {
 namespace {
 
-constexpr int part_shift = 2;  // parts of a block: 4 x 4 pixels
-
-float luminance(const std::array<float, 3>& color)
-{
-    return 0.2126f * color[0] + 0.7152f * color[1] + 0.0722f * color[2];
-}
-
 // The 3 x 3 pixels about one, as far as they lie in the area.
 template<class Visit>
 void for_pixels_around(const Window& area, int x, int y, const Visit& visit)
@@ -22,68 +15,6 @@ void for_pixels_around(const Window& area, int x, int y, const Visit& visit)
     for (int v = std::max(y - 1, area.y); v <= low; ++v)
         for (int u = std::max(x - 1, area.x); u <= right; ++u) visit(u, v);
 }
-
-// Mean albedo of every pixel of the area, as luminance.
-std::vector<float> albedo_luminances(const Film& film, const Window& area)
-{
-    std::vector<float> values;
-    values.reserve(area.pixels());
-    for (int y = 0; y < area.height; ++y)
-        for (int x = 0; x < area.width; ++x)
-            values.push_back(luminance(film.albedo(area.x + x, area.y + y)));
-    return values;
-}
-
-// value(u, v): of the albedo's luminance at a pixel.
-template<class Value>
-float contrast_around(const Window& area, int x, int y, const Value& value)
-{
-    float sum = 0, square = 0;
-    int count = 0;
-    for_pixels_around(area, x, y, [&](int u, int v) {
-        const float here = value(u, v);
-        sum += here;
-        square += here * here;
-        ++count;
-    });
-    const float mean = sum / float(count);
-    const float variance = std::max(square / float(count) - mean * mean, 0.0f);
-    return mean > 0 ? std::sqrt(variance) / mean : 0;
-}
-
-// contrast(): of the texture at the pixel; asked where it counts.
-template<class Contrast>
-float error_at(const Film& film, int x, int y, const Viewer& viewer, const Contrast& contrast)
-{
-    if (!film.is_error_known(x, y)) return unknown_error;
-    const std::array<float, 3> error = film.standard_error(x, y);
-    if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
-    return visible_error(film.radiance(x, y), error, contrast(), viewer);
-}
-
-// Errors of the pixels of an area of the film's window, by what lies in it: pixel_error with the
-// albedos worked out once.
-class PixelErrors {
-public:
-    PixelErrors(const Film& film, const Viewer& viewer, const Window& area)
-        : film_(film), viewer_(viewer), area_(area), albedos_(albedo_luminances(film, area))
-    {
-    }
-
-    float at(int x, int y) const
-    {
-        const auto albedo = [&](int u, int v) {
-            return albedos_[size_t(v - area_.y) * size_t(area_.width) + size_t(u - area_.x)];
-        };
-        return error_at(film_, x, y, viewer_, [&] { return contrast_around(area_, x, y, albedo); });
-    }
-
-private:
-    const Film& film_;
-    const Viewer& viewer_;
-    Window area_;
-    std::vector<float> albedos_;
-};
 
 int quantised(double error)
 {
@@ -98,43 +29,30 @@ double share_below(double bound, double deviation)
 
 }  // namespace
 
-BlockError block_error(const Film& film, const Viewer& viewer, Pixel corner, int shift)
+BlockError block_error(const Film& film, const image::Viewer& viewer, Pixel corner, int shift)
 {
-    const int parts = std::max(1, 1 << (shift - part_shift));
-    const int part_side = (1 << shift) / parts;
     const int right = std::min(corner.x + (1 << shift), film.width());
     const int low = std::min(corner.y + (1 << shift), film.height());
-    const PixelErrors errors(film, viewer, {corner.x, corner.y, right - corner.x, low - corner.y});
-    double all = 0, worst = 0;
-    int pixels = 0;
-    for (int top = corner.y; top < low; top += part_side)
-        for (int left = corner.x; left < right; left += part_side) {
-            double sum = 0;
-            int count = 0;
-            for (int y = top; y < std::min(top + part_side, low); ++y)
-                for (int x = left; x < std::min(left + part_side, right); ++x, ++count) {
-                    const double error = double(confidence * errors.at(x, y));
-                    sum += error * error;
-                }
-            all += sum;
-            pixels += count;
-            worst = std::max(worst, sum / count);
+    double square = 0, worst = 0;
+    for (int y = corner.y; y < low; ++y)
+        for (int x = corner.x; x < right; ++x) {
+            const double error = double(confidence * pixel_error(film, x, y, viewer));
+            square += error * error;
+            worst = std::max(worst, error);
         }
-    return {quantised(std::sqrt(all / pixels)), quantised(std::sqrt(worst))};
+    const double pixels = double(right - corner.x) * (low - corner.y);
+    return {quantised(std::sqrt(square / pixels)), quantised(worst)};
 }
 
-float texture_contrast(const Film& film, int x, int y)
+float pixel_error(const Film& film, int x, int y, const image::Viewer& viewer)
 {
-    return contrast_around(film.data().window, x, y,
-                           [&](int u, int v) { return luminance(film.albedo(u, v)); });
+    if (!film.is_error_known(x, y)) return unknown_error;
+    const std::array<float, 3> error = film.standard_error(x, y);
+    if (error[0] == 0 && error[1] == 0 && error[2] == 0) return 0;
+    return image::visible_error(film.radiance(x, y), error, viewer);
 }
 
-float pixel_error(const Film& film, int x, int y, const Viewer& viewer)
-{
-    return error_at(film, x, y, viewer, [&] { return texture_contrast(film, x, y); });
-}
-
-float pixel_bound(const Film& film, int x, int y, const Viewer& viewer)
+float pixel_bound(const Film& film, int x, int y, const image::Viewer& viewer)
 {
     float sum = 0;
     int count = 0;
@@ -146,7 +64,8 @@ float pixel_bound(const Film& film, int x, int y, const Viewer& viewer)
     return confidence * std::sqrt(sum / float(count));
 }
 
-std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid, const Viewer& viewer)
+std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid,
+                                     const image::Viewer& viewer)
 {
     std::vector<BlockError> errors;
     errors.reserve(grid.corners.size());
@@ -163,7 +82,8 @@ double block_p95(std::vector<BlockError> errors)
     return double(p95->rms) / error_unit;
 }
 
-void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid, const Viewer& viewer)
+void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid,
+                  const image::Viewer& viewer)
 {
     for_team(schedule, schedule.turn, [&](size_t b) {
         if (!schedule.blocks[b].is_done)
@@ -171,7 +91,7 @@ void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid, c
     });
 }
 
-ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const Viewer& viewer,
+ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const image::Viewer& viewer,
                              double target)
 {
     ErrorSummary summary;
@@ -191,15 +111,14 @@ ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const View
     return summary;
 }
 
-std::vector<float> predicted_error(const Film& film, const Viewer& viewer)
+std::vector<float> predicted_error(const Film& film, const image::Viewer& viewer)
 {
     const int width = film.width(), height = film.height();
     const Window whole{0, 0, width, height};
-    const PixelErrors errors(film, viewer, whole);
     std::vector<float> squares(size_t(width) * size_t(height)), out(squares.size());
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const float error = errors.at(x, y);
+            const float error = pixel_error(film, x, y, viewer);
             squares[size_t(y) * size_t(width) + size_t(x)] = error * error;
         }
     for (int y = 0; y < height; ++y)
@@ -215,7 +134,7 @@ std::vector<float> predicted_error(const Film& film, const Viewer& viewer)
     return out;
 }
 
-image::Picture picture_of(const Film& film, const Viewer& viewer)
+image::Picture picture_of(const Film& film, const image::Viewer& viewer)
 {
     image::Picture picture = film.picture();
     if (film.has_standard_error() && film.data().window.pixels() > 1)

@@ -182,7 +182,7 @@ Checkpoint checkpoint_from(const json& in, size_t left)
 
 // Blocks as the file holds them.
 struct StoredBlock {
-    std::int32_t quanta, target, is_done, error, worst_part;
+    std::int32_t quanta, target, is_done, error, worst_pixel;
 };
 
 class Reader {
@@ -361,7 +361,7 @@ void write_checkpoint(SafeFile& file, const CheckpointHead& head, const Film& fi
         std::vector<StoredBlock> blocks;
         for (const BlockState& block : slice.schedule.blocks)
             blocks.push_back({block.quanta, block.target, block.is_done, block.error.rms,
-                              block.error.worst_part});
+                              block.error.worst_pixel});
         writer.write(blocks.data(), blocks.size() * sizeof(StoredBlock));
     }
     writer.write_checksum();
@@ -385,7 +385,7 @@ Checkpoint read_checkpoint(const std::string& path)
             block.quanta = stored.quanta;
             block.target = stored.target;
             block.is_done = stored.is_done != 0;
-            block.error = {stored.error, stored.worst_part};
+            block.error = {stored.error, stored.worst_pixel};
         }
     reader.expect_checksum("sums");
     return checkpoint;

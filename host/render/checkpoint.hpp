@@ -14,7 +14,7 @@
 
 namespace diptych {
 
-inline constexpr unsigned checkpoint_version = 2;
+inline constexpr unsigned checkpoint_version = 3;
 
 // What two checkpoints must share to belong to one picture.
 struct CheckpointSubject {

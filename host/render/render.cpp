@@ -1,6 +1,9 @@
 #include "host/render/render.hpp"
 
+#include "host/render/forecast.hpp"
+
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -10,7 +13,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double first_level = 4;          // JND: where a render with only a time limit begins
-constexpr int small_picture = 500'000;     // pixels
 constexpr double longest_dispatch = 0.25;  // seconds, where a device can leave one for later
 constexpr size_t items_of_pixel = 64;      // quanta at once, likewise
 
@@ -32,7 +34,7 @@ int film_batches(const RenderOptions& options)
 
 bool is_known(const BlockError& error)
 {
-    return error.worst_part < int(confidence * unknown_error * float(error_unit));
+    return error.worst_pixel < int(confidence * unknown_error * float(error_unit));
 }
 
 // One render: its plan, its state, and what a dispatch is made of.
@@ -95,7 +97,7 @@ private:
         result.target = double(target()) / error_unit;
         const std::vector<BlockError> errors = block_errors(result.film, grid_, options_.viewer);
         for (const BlockError& error : errors)
-            result.unfinished_blocks += std::max(error.rms, error.worst_part / 3) > target();
+            result.unfinished_blocks += error_of(error) > target();
         const bool is_reached = is_complete && result.unfinished_blocks == 0;
         result.ending = is_reached       ? Ending::TargetReached
                         : is_complete    ? Ending::SamplesDone
@@ -163,6 +165,7 @@ private:
     bool begin_adaptive()
     {
         measure_team(state_.schedule, state_.film, grid_, options_.viewer);
+        forecast_.observe(state_.schedule);
         const Targets targets{target(), 4 * QUANTUM, options_.is_unbiased};
         const int pilot = state_.schedule.pilot;
         const bool has_begun = begin_adaptive_round(state_.schedule, grid_, quanta_, targets);
@@ -293,7 +296,9 @@ private:
                           statistics.rays + statistics.shadow_rays};
         if (is_adaptive(options_)) {
             progress.error = error_decided_by();
-            if (options_.error > 0) progress.fraction = adaptive_fraction();
+            if (options_.error > 0)
+                progress.fraction =
+                    forecast_.fraction(state_.schedule, target(), int(quanta_.size()));
             if (options_.time_limit > 0)
                 progress.fraction = std::max(options_.error > 0 ? progress.fraction : 0,
                                              std::min(1.0, progress.seconds / options_.time_limit));
@@ -316,24 +321,6 @@ private:
         return std::all_of(errors.begin(), errors.end(), is_known) ? block_p95(errors) : 0;
     }
 
-    // Of the samples that the errors of the last decisions ask for: what is there already.
-    double adaptive_fraction() const
-    {
-        double needed = 0, there = 0;
-        for (size_t b = 0; b < grid_.corners.size(); ++b) {
-            const BlockState& block = state_.schedule.blocks[b];
-            double want = std::max(4, block.target);
-            if (is_known(block.error) && !block.is_done && block.target > block.quanta / 2) {
-                const double ratio =
-                    double(std::max(block.error.rms, block.error.worst_part / 3)) / target();
-                want = std::max(want, 0.5 * block.target * ratio * ratio);
-            }
-            needed += want;
-            there += block.quanta;
-        }
-        return needed > 0 ? there / needed : 1;
-    }
-
     Backend& backend_;
     const RenderOptions& options_;
     BlockGrid grid_;
@@ -341,6 +328,7 @@ private:
     RenderState state_;
     Plan plan_;
     Clock::time_point start_;
+    Forecast forecast_;
     std::vector<Work> work_;  // rounds one after the other; from next_ on not done
     size_t next_ = 0;
     std::vector<WorkItem> work_items_;
@@ -375,9 +363,9 @@ std::vector<Quantum> plan_of(const RenderOptions& options)
 BlockGrid grid_of(const Settings& settings, const RenderOptions& options)
 {
     if (options.pixel) return grid_of_pixel(settings.width, settings.height, *options.pixel);
-    const bool is_small = settings.width * settings.height < small_picture;
+    const int side = image::error_block_side(settings.width, settings.height);
     return grid_of_blocks(settings.width, settings.height,
-                          is_adaptive(options) && is_small ? BLOCK_SHIFT - 1 : BLOCK_SHIFT);
+                          is_adaptive(options) ? std::countr_zero(unsigned(side)) : BLOCK_SHIFT);
 }
 
 BlockGrid error_grid(const Settings& settings)

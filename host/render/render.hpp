@@ -40,7 +40,7 @@ struct RenderOptions {
     double error = 0;       // 0: none
     double time_limit = 0;  // seconds; 0: none. Each pixel gets a sample whatever it says
     bool is_unbiased = false;
-    Viewer viewer;
+    image::Viewer viewer;
     std::function<void(const Progress&)> progress;
     std::function<void(const RenderState&)> observe;  // after every dispatch, on this thread
     int most_items = 0;                               // in a dispatch; 0: what the backend plans

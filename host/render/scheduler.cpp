@@ -8,6 +8,8 @@
 
 namespace diptych {
 
+int error_of(const BlockError& error) { return std::max(error.rms, (error.worst_pixel + 2) / 3); }
+
 std::vector<Quantum> quanta_of(int first, int end)
 {
     std::vector<Quantum> quanta;
@@ -148,9 +150,6 @@ int doubled(const BlockState& block, std::span<const Quantum> plan)
 {
     return std::min(std::max(1, 2 * block.quanta), int(plan.size()));
 }
-
-// Its own error at last, and that of its parts, in the target's terms.
-int error_of(const BlockError& error) { return std::max(error.rms, (error.worst_part + 2) / 3); }
 
 // The error falls as the root of the samples.
 double samples_needed(int samples, int error, int target)

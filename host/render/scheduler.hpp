@@ -53,10 +53,13 @@ std::vector<Pixel> blocks_of(int width, int height, int shift = BLOCK_SHIFT);
 // The predicted error of a block, in 1/1024 JND: whole numbers, so that decisions are the same
 // wherever they are taken.
 struct BlockError {
-    int rms = 0;         // over the block
-    int worst_part = 0;  // the largest RMS of its parts of 4 x 4 pixels
+    int rms = 0;          // over the block
+    int worst_pixel = 0;  // the largest
 };
 inline constexpr int error_unit = 1024;
+
+// How far it is from a target: the larger of the RMS and of a third of the worst pixel, rounded up.
+int error_of(const BlockError& error);
 
 // Where a block stands; quanta and target count entries of the sample plan.
 struct BlockState {
@@ -99,8 +102,9 @@ struct Targets {
 
 // The next round of the team whose turn it is, whose errors have been measured; the turn goes on.
 // Each block that is not done gets as many quanta as its error asks for, at most as many as it has.
-// A block is done when its error is below the target, those of its parts below thrice and those of
-// all its neighbours below twice the target, or when the plan ends. False when all of the team are.
+// A block is done when its error is at most the target, that of each of its pixels at most thrice
+// and those of all its neighbours at most twice the target, or when the plan ends. False when all
+// of the team are.
 //
 // With is_unbiased, and one team, the first least_samples of each block only say how many it needs;
 // schedule.pilot then becomes the number of quanta that the film is to forget.

@@ -114,7 +114,7 @@ TEST(Scheduler, AsksForWhatTheErrorNeedsAndAtMostDoubles)
     ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, {}));
     EXPECT_EQ(schedule.blocks[0].target, 25);
     EXPECT_EQ(schedule.blocks[1].target, 32);
-    EXPECT_EQ(schedule.blocks[2].target, 25);  // for one of its parts
+    EXPECT_EQ(schedule.blocks[2].target, 25);  // for one of its pixels
     expect_in_order(work_by_block(schedule, plan, 0), plan, schedule);
     EXPECT_EQ(work_by_block(schedule, plan, 0)[0].block, 1);  // the worst one first
 }
