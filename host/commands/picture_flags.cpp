@@ -1,5 +1,7 @@
 #include "host/commands/picture_flags.hpp"
 
+#include "host/image/view_transform.hpp"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -7,18 +9,6 @@
 #include <stdexcept>
 
 namespace diptych {
-namespace {
-
-image::View parse_view(const std::string& text)
-{
-    if (text == "standard") return image::View::Standard;
-    if (text == "neutral") return image::View::Neutral;
-    if (text == "filmic") return image::View::Filmic;
-    throw std::runtime_error("--view " + text + ": no such view; use standard, neutral or filmic");
-}
-
-}  // namespace
-
 void add_picture_flags(CLI::App& app, std::string& view, image::WriteOptions& write)
 {
     app.add_option("--exposure", write.exposure, "Stops, for display pictures")
@@ -32,7 +22,7 @@ void add_picture_flags(CLI::App& app, std::string& view, image::WriteOptions& wr
 
 image::WriteOptions picture_options(const std::string& view, image::WriteOptions write)
 {
-    write.view = parse_view(view);
+    write.view = image::view_of_name(view);
     if (!(std::abs(write.exposure) <= 100))
         throw std::runtime_error(fmt::format(
             "--exposure {}: out of range; give stops from -100 to 100", write.exposure));

@@ -23,15 +23,16 @@ using Json = nlohmann::ordered_json;
 std::string known_metrics()
 {
     std::string names;
-    for (const char* name : METRICS) names += (names.empty() ? "" : ", ") + std::string(name);
-    return names;
+    for (const char* name : METRICS) names += std::string(name) + ", ";
+    return names + PREDICTION_METRIC;
 }
 
 // "flip" alone is its mean, as everyone says it.
 std::string metric_name(const std::string& given)
 {
     const std::string name = given == "flip" ? "flip.mean" : given;
-    if (std::find(std::begin(METRICS), std::end(METRICS), name) == std::end(METRICS))
+    if (std::find(std::begin(METRICS), std::end(METRICS), name) == std::end(METRICS) &&
+        name != PREDICTION_METRIC)
         fail(fmt::format("--metric {}: no such metric; there are {}", given, known_metrics()));
     return name;
 }
@@ -105,6 +106,21 @@ public:
         return *flip_;
     }
 
+    const VisibleDifferences& visible()
+    {
+        if (!visible_) visible_ = visible_differences(pair_.reference, pair_.test, options_.viewer);
+        return *visible_;
+    }
+
+    double broken()
+    {
+        if (!visible().broken)
+            fail(fmt::format("{}: no layer predicted_error, and --metric {} needs it; render with "
+                             "--error, --time or 128 samples and more",
+                             options_.test, PREDICTION_METRIC));
+        return *visible().broken;
+    }
+
     double value(const std::string& metric)
     {
         if (metric == "rmse") return differences().rmse;
@@ -116,6 +132,10 @@ public:
         if (metric == "flip.median") return flip().median;
         if (metric == "flip.p99") return flip().p99;
         if (metric == "flip.max") return flip().max;
+        if (metric == "jnd.rms") return visible().rms;
+        if (metric == "jnd.p95") return visible().p95;
+        if (metric == "jnd.blocks") return visible().blocks;
+        if (metric == PREDICTION_METRIC) return broken();
         return yee_share(pair_.reference, pair_.test);
     }
 
@@ -129,6 +149,7 @@ private:
     std::optional<PixelDifferences> differences_;
     std::optional<Bias> bias_;
     std::optional<FlipResult> flip_;
+    std::optional<VisibleDifferences> visible_;
 };
 
 Json flip_details(const FlipResult& flip, double pixels_per_degree)
@@ -192,6 +213,9 @@ std::string line_of(const Measurement& m, const Json& report)
     if (m.metric == "max")
         line += fmt::format("   at pixel {},{}", report["max_pixel"][0].get<int>(),
                             report["max_pixel"][1].get<int>());
+    if (m.metric == "jnd.blocks") line += "   share of the blocks whose RMS is above 1 JND";
+    if (m.metric == PREDICTION_METRIC)
+        line += "   share of the pixels predicted within 1 JND that are not";
     if (m.metric == "yee") line += "   share of pixels whose colour differs visibly";
     if (m.metric == "flip.mean" && report["flip"].contains("exposures"))
         line += fmt::format("   {} exposures from {:.3f} to {:.3f} stops",
@@ -218,9 +242,14 @@ void print_report(const CompareOptions& options, const CompareResult& result, st
 CompareResult compare_pictures(const CompareOptions& options)
 {
     CompareResult result{requested(options), {}, true};
+    if (!(std::abs(options.viewer.exposure) <= 100))
+        fail(fmt::format("--exposure {}: out of range; give stops from -100 to 100",
+                         options.viewer.exposure));
     if (!options.heat_map.empty()) check_writable(options.heat_map);
     const Pair pair = read_pair(options);
     Measuring measuring(pair, options);
+    if (options.metrics.empty() && !pair.test.predicted_error.empty())
+        result.measurements.push_back({PREDICTION_METRIC, 0, false, 0, true});
     for (Measurement& m : result.measurements) {
         m.value = measuring.value(m.metric);
         m.within = !m.limited || std::abs(m.value) <= m.limit;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/image/flip.hpp"
+#include "host/image/visible_error.hpp"
 
 #include <iosfwd>
 #include <string>
@@ -17,6 +18,7 @@ struct CompareOptions {
     std::string layer;                 // empty: the beauty
     std::string heat_map;              // where the FLIP map goes; empty: nowhere
     double pixels_per_degree = FLIP_PIXELS_PER_DEGREE;
+    Viewer viewer;  // for JND, of linear pictures
     bool json = false;
     std::string json_file;  // empty: standard output
     std::string manifest;   // a list of comparisons instead of A and B
@@ -27,7 +29,10 @@ struct CompareOptions {
 // What can be measured and limited. "bias" is limited by its absolute value, everything else as it
 // is.
 constexpr const char* METRICS[] = {"rmse",      "relmse",      "mean",     "max",      "bias",
-                                   "flip.mean", "flip.median", "flip.p99", "flip.max", "yee"};
+                                   "flip.mean", "flip.median", "flip.p99", "flip.max", "jnd.rms",
+                                   "jnd.p95",   "jnd.blocks",  "yee"};
+// Measured where the test has the layer predicted_error.
+constexpr const char* PREDICTION_METRIC = "jnd.broken";
 
 struct Measurement {
     std::string metric;

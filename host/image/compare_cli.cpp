@@ -1,5 +1,7 @@
 #include "host/image/compare_cli.hpp"
 
+#include "host/image/view_transform.hpp"
+
 #include <CLI/CLI.hpp>
 
 namespace diptych::image {
@@ -22,6 +24,11 @@ static const char* const FOOTER =
   bias         mean of b - a, with its 95 % interval when a picture has the layer standard_error
   flip.mean    FLIP, what a viewer notices when flipping between the two: LDR for 8- and 16-bit
                pictures, HDR for floating point; also flip.median, flip.p99 (99th percentile), flip.max
+  jnd.rms      just noticeable differences from pixel to pixel, as of render --error, of what a
+               display shows through --exposure and --view; also jnd.p95 (95th percentile)
+  jnd.blocks   share of the blocks (16 x 16 pixels, 8 x 8 below half a megapixel) with an RMS above 1
+  jnd.broken   where B has the layer predicted_error: of the pixels that it predicts within 1 JND,
+               the share that is not
   yee          share of pixels that OpenImageIO's perceptual comparison tells apart (by their colour
                only: its luminance test has no effect in OpenImageIO 2.4)
 LDR pictures are compared in their sRGB values, 0 to 1; EXR, HDR and float TIFF in linear values.
@@ -59,6 +66,15 @@ CLI::App* add_compare_command(CLI::App& app, CompareOptions& options)
         ->add_option("--ppd", options.pixels_per_degree,
                      "Pixels per degree of sight for FLIP (67.02 when not given)")
         ->type_name("NUMBER");
+    command->add_option("--exposure", options.viewer.exposure, "Stops, for jnd")
+        ->capture_default_str();
+    command
+        ->add_option_function<std::string>(
+            "--view",
+            [&options](const std::string& name) { options.viewer.view = view_of_name(name); },
+            "How radiance becomes display colours, for jnd: standard (when not given), neutral or "
+            "filmic")
+        ->type_name("NAME");
     CLI::Option* json = command->add_option_function<std::vector<std::string>>(
         "--json",
         [&options](const std::vector<std::string>& file) {

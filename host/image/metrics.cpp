@@ -53,6 +53,25 @@ double half_width(double variance_of_sum, size_t pixels)
     return 1.959964 * std::sqrt(variance_of_sum) / double(pixels);
 }
 
+double share_of_blocks_above(double bar, const std::vector<double>& differences, int width,
+                             int height)
+{
+    const int side = error_block_side(width, height);
+    int blocks = 0, above = 0;
+    for (int top = 0; top < height; top += side)
+        for (int left = 0; left < width; left += side, ++blocks) {
+            const int right = std::min(left + side, width), low = std::min(top + side, height);
+            double square = 0;
+            for (int y = top; y < low; ++y)
+                for (int x = left; x < right; ++x) {
+                    const double d = differences[size_t(y) * size_t(width) + size_t(x)];
+                    square += d * d;
+                }
+            above += square > bar * bar * (right - left) * (low - top);
+        }
+    return double(above) / blocks;
+}
+
 std::vector<float> linear_values(const Colors& colors)
 {
     std::vector<float> values = colors.values;
@@ -74,11 +93,16 @@ Colors colors_of(const Picture& picture, const std::string& name, const std::str
     const size_t pixels = size_t(picture.width) * picture.height;
     colors.values = three_channels(*layer, pixels);
     check_finite(colors, colors.values, where);
-    const Layer* error = name.empty() ? find_layer(picture, "standard_error") : nullptr;
-    if (error && error->ids.empty()) {
+    const auto find_pixels = [&](const char* of_beauty) {
+        const Layer* found = name.empty() ? find_layer(picture, of_beauty) : nullptr;
+        return found && found->ids.empty() ? found : nullptr;
+    };
+    if (const Layer* error = find_pixels("standard_error")) {
         colors.standard_error = three_channels(*error, pixels);
         check_finite(colors, colors.standard_error, where + " (standard error)");
     }
+    if (const Layer* error = find_pixels("predicted_error"); error && error->channels.size() == 1)
+        colors.predicted_error = error->pixels;
     return colors;
 }
 
@@ -132,6 +156,34 @@ Bias bias_of(const Colors& reference, const Colors& test)
     bias.half_width = half_width(variance, pixels);
     for (int c = 0; c < 3; ++c) bias.channel_half_widths[c] = half_width(variances[c], pixels);
     return bias;
+}
+
+VisibleDifferences visible_differences(const Colors& reference, const Colors& test,
+                                       const Viewer& viewer)
+{
+    const std::vector<float> a = linear_values(reference), b = linear_values(test);
+    std::vector<double> differences;
+    differences.reserve(a.size() / 3);
+    double square = 0, predicted = 0, broken = 0;
+    for (size_t i = 0; i < a.size() / 3; ++i) {
+        const Rgb one{a[3 * i], a[3 * i + 1], a[3 * i + 2]};
+        const Rgb other{b[3 * i], b[3 * i + 1], b[3 * i + 2]};
+        const double difference = double(visible_difference(one, other, viewer));
+        square += difference * difference;
+        if (!test.predicted_error.empty() && test.predicted_error[i] <= 1) {
+            predicted += 1;
+            broken += difference > 1 ? 1 : 0;
+        }
+        differences.push_back(difference);
+    }
+    VisibleDifferences result;
+    result.rms = std::sqrt(square / double(differences.size()));
+    result.blocks = share_of_blocks_above(1, differences, test.width, test.height);
+    const auto p95 = differences.begin() + std::ptrdiff_t((differences.size() - 1) * 95 / 100);
+    std::nth_element(differences.begin(), p95, differences.end());
+    result.p95 = *p95;
+    if (!test.predicted_error.empty()) result.broken = predicted > 0 ? broken / predicted : 0;
+    return result;
 }
 
 double yee_share(const Colors& reference, const Colors& test)

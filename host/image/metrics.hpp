@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/image/image.hpp"
+#include "host/image/visible_error.hpp"
 
 #include <array>
 #include <optional>
@@ -11,13 +12,14 @@
 namespace diptych::image {
 
 // One layer of a picture as three values a pixel (a single channel repeated), all of them finite,
-// and the standard error of each where the picture has that layer.
+// and what other layers say of the beauty, where the picture has them.
 struct Colors {
     int width = 0;
     int height = 0;
     Encoding encoding = Encoding::Linear;
     std::vector<float> values;
-    std::vector<float> standard_error;  // empty: not known
+    std::vector<float> standard_error;        // of each value; empty: not known
+    std::vector<float> predicted_error = {};  // JND that each pixel's stays below; empty: not known
 };
 
 // Throws std::runtime_error, naming the pixel, for a NaN or an infinity; and for a layer that is
@@ -48,6 +50,16 @@ struct Bias {
     std::array<double, 3> channel_half_widths{};
 };
 Bias bias_of(const Colors& reference, const Colors& test);
+
+// Just noticeable differences from pixel to pixel of what a display shows.
+struct VisibleDifferences {
+    double rms = 0;
+    double p95 = 0;                // 95 % of the pixels have less
+    double blocks = 0;             // those of error_block_side with an RMS above 1, of all
+    std::optional<double> broken;  // of the pixels that test predicts within 1: those that are not
+};
+VisibleDifferences visible_differences(const Colors& reference, const Colors& test,
+                                       const Viewer& viewer);
 
 // The share of pixels that OpenImageIO's perceptual comparison (Hector Yee's metric, 100 cd/m2, 45
 // degrees) tells apart. Take it as a second opinion on colour only: in OpenImageIO 2.4 its

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace diptych::image {
 
@@ -68,6 +69,14 @@ Rgb view_filmic(Rgb color)
     color = transform(out, color);
     for (float& c : color) c = std::clamp(c, 0.0f, 1.0f);
     return color;
+}
+
+View view_of_name(const std::string& name)
+{
+    if (name == "standard") return View::Standard;
+    if (name == "neutral") return View::Neutral;
+    if (name == "filmic") return View::Filmic;
+    throw std::runtime_error("--view " + name + ": no such view; use standard, neutral or filmic");
 }
 
 Rgb display_light(Rgb radiance, float exposure, View view)

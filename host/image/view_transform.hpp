@@ -21,6 +21,9 @@ Rgb view_filmic(Rgb color);  // Stephen Hill's fit of the ACES RRT and sRGB ODT
 // Linear display light of linear radiance, 2^exposure times as bright; above 1 a display clips.
 Rgb display_light(Rgb radiance, float exposure, View view);
 
+// standard, neutral or filmic; throws std::runtime_error for another name.
+View view_of_name(const std::string& name);
+
 // sRGB values in 0..1 of linear radiance, 2^exposure times as bright.
 Rgb display_value(Rgb radiance, float exposure, View view);
 

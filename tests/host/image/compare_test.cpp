@@ -127,6 +127,31 @@ TEST_F(Compare, BiasGetsAnIntervalFromStandardErrorLayers)
     EXPECT_NE(run({a, b}).out.find("95 % interval"), std::string::npos);
 }
 
+// Half of the pixels are right, and said to be; of the others, half are said to be.
+TEST_F(Compare, PredictionsAreHeldAgainstTheReference)
+{
+    Picture picture = plain(20, 10, 0.5f);
+    std::vector<float> predicted(200, 0.9f);
+    for (size_t pixel = 0; pixel < 100; ++pixel) {
+        for (size_t c = 0; c < 3; ++c) picture.layers[0].pixels[4 * pixel + c] = 0.6f;
+        if (pixel % 2 == 0) predicted[pixel] = 4;
+    }
+    EXPECT_EQ(run({a, b, "--metric", "jnd.broken"}).code, 2) << "nothing is predicted";
+    picture.layers.push_back(predicted_error_layer(predicted));
+    write_picture(b, picture);
+    const json report = json::parse(run({a, b, "--json"}).out);
+    // L* of 0.5 is 76.0693, of 0.6 81.8382; 2 of them are a JND
+    EXPECT_NEAR(report["jnd.p95"].get<double>(), 2.88445, 1e-3);
+    EXPECT_NEAR(report["jnd.rms"].get<double>(), 2.88445 / std::sqrt(2.0), 1e-3);
+    EXPECT_NEAR(report["jnd.broken"].get<double>(), 1.0 / 3, 1e-9);
+    EXPECT_NEAR(report["jnd.blocks"].get<double>(), 3.0 / 6, 1e-9) << "of 8 x 8 pixels";
+    EXPECT_EQ(run({a, b, "--metric", "jnd.broken", "--max", "0.3"}).code, 1);
+    EXPECT_EQ(run({a, b, "--metric", "jnd.rms", "--max", "0", "--exposure", "4"}).code, 0)
+        << "both are white";
+    const std::string filmic = run({a, b, "--metric", "jnd.rms", "--view", "filmic", "--json"}).out;
+    EXPECT_NE(json::parse(filmic)["jnd.rms"], report["jnd.rms"]);
+}
+
 TEST_F(Compare, HeatMapIsMagma)
 {
     EXPECT_EQ(run({a, a, "-o", folder / "map.png"}).code, 0);
