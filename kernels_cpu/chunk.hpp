@@ -13,7 +13,7 @@
 
 namespace diptych {
 
-inline constexpr int chunk_paths = 512;
+inline constexpr int chunk_paths = 1024;
 
 // Path state for one thread, and what its work has cost so far.
 class Chunk {
