@@ -99,7 +99,10 @@ std::string ending_text(const RenderResult& result, const RenderOptions& options
     const char* why[] = {"the target is reached", "the samples are used up", "the time is over",
                          "interrupted"};
     std::string text = "ended: " + std::string(why[int(result.ending)]);
-    if (options.is_unbiased && result.ending == Ending::SamplesDone)
+    const bool is_cut = std::any_of(
+        result.schedule.blocks.begin(), result.schedule.blocks.end(),
+        [&](const BlockState& block) { return block.quanta >= options.samples / QUANTUM; });
+    if (options.is_unbiased && result.ending == Ending::SamplesDone && !is_cut)
         text = "ended: what the pilot asked for is rendered";
     if (result.target > 0 && result.ending != Ending::TargetReached)
         text += fmt::format("; {} of {} blocks are above {:.3g} JND", result.unfinished_blocks,

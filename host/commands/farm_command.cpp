@@ -42,6 +42,12 @@ void check_render_flags(const FarmCommand& command)
         !render.pixel.empty())
         throw std::runtime_error("farm: --checkpoint, --restart, --range, --pixel and --json are "
                                  "the tasks' own; leave them out");
+    parse_size(render.scene.size);
+    with_device_list(render.device);
+    if (render.error.error_option->count() > 0 || !render.error.time.empty() ||
+        render.error.is_unbiased || render.is_audited)
+        throw std::runtime_error("farm: --error, --time, --unbiased and --audit are not for slices "
+                                 "of the samples; give --samples");
     if (!render.scene.scene.empty() && !fs::exists(render.scene.scene))
         throw std::runtime_error(render.scene.scene + ": no such file; name a scene");
 }
@@ -81,7 +87,11 @@ Folder make_folder(const FarmCommand& command)
     if (command.script.empty())
         image::write_file_whole(script, farm_script);
     else
-        fs::copy_file(command.script, script, fs::copy_options::overwrite_existing);
+        fs::copy_file(command.script, script, fs::copy_options::overwrite_existing, error);
+    if (error)
+        throw std::runtime_error(fmt::format("--script {}: cannot be copied to {} ({}); name a "
+                                             "batch script that can be read",
+                                             command.script, script, error.message()));
     return folder;
 }
 

@@ -40,14 +40,17 @@ void check_film_fits(const SceneData& scene, const RenderOptions& options)
     const size_t needed = film_bytes(scene, options);
     const size_t there = size_t(sysconf(_SC_PHYS_PAGES)) * size_t(sysconf(_SC_PAGE_SIZE));
     if (needed > there)
-        throw std::runtime_error(fmt::format(
-            "--size: the film of {} x {} pixels needs {} MiB, this machine has {} MiB; "
-            "render a smaller picture, or fewer than {} samples without --error",
-            settings.width, settings.height, needed >> 20, there >> 20, standard_error_samples));
+        throw std::runtime_error(
+            fmt::format("--size: the film of {} x {} pixels needs {} MiB, this machine has {} MiB; "
+                        "render a smaller picture, or --one-sequence without --error",
+                        settings.width, settings.height, needed >> 20, there >> 20));
 }
 
 void print_audit(const Audit& audit, double bar)
 {
+    if (audit.blocks < audit.chosen)
+        fmt::print(stderr, "audit: broken off after {} of {} blocks\n", audit.blocks, audit.chosen);
+    if (audit.blocks == 0) return;
     fmt::print(stderr,
                "audit: {} blocks rendered again by other samples in {:.1f} s: RMS error {:.3g} JND "
                "({:.3g} to {:.3g}); {:.1f} % of the pixels within {:.3g} JND; {:.1f} % of those "
@@ -199,10 +202,11 @@ int run_render_command(const RenderCommand& command)
     options.viewer = {write.exposure, write.view};
     set_targets(run.error, run.scene.samples, options);
     set_range(run.checkpoint.range, options);
-    if (run.is_audited && (options.pixel || options.samples < standard_error_samples))
+    if (run.is_audited &&
+        (options.pixel || options.samples < standard_error_samples || run.scene.is_one_sequence))
         throw std::runtime_error(
             fmt::format("--audit: the error is not known; give a whole picture "
-                        "{} samples or more, or --error or --time",
+                        "{} samples or more without --one-sequence, or --error or --time",
                         standard_error_samples));
     ProgressPictures pictures(run, options, write);
     options.stop = &is_interrupted;
@@ -266,11 +270,13 @@ int run_render_command(const RenderCommand& command)
     std::optional<ErrorSummary> error;
     if (result.film.has_standard_error() && !options.pixel)
         error = summarise_error(result.film, error_grid(scene.settings[0]), options.viewer, aim);
-    std::optional<Audit> audited;
-    if (run.is_audited) audited = audit(*backend, scene, options, result, aim);
     if (!run.is_quiet) print_summary(run, result);
     if (!run.is_quiet && error) fmt::print(stderr, "{}\n", ending_text(result, options, *error));
-    if (audited) print_audit(*audited, aim);
+    std::optional<Audit> audited;
+    if (run.is_audited) {
+        audited = audit(*backend, scene, options, result, aim);
+        print_audit(*audited, aim);
+    }
     if (!run.json.empty()) {
         const std::string report = json_report(run, scene, *backend, result, picture, place,
                                                textures, error, audited, checkpoint.writer()) +
@@ -281,7 +287,8 @@ int run_render_command(const RenderCommand& command)
             image::write_file_whole(run.json, report);
     }
     if (!lost.empty()) throw std::runtime_error(lost);
-    return result.is_complete ? 0 : 130;
+    const bool is_audit_cut = audited && audited->blocks < audited->chosen;
+    return result.is_complete && !is_audit_cut ? 0 : 130;
 }
 
 }  // namespace diptych

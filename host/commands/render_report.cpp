@@ -61,11 +61,14 @@ void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan
     const int samples = options.samples;
     const Settings& settings = scene.settings[0];
     for (const std::string& line : scene.notices) fmt::print(stderr, "notice: {}\n", line);
-    const std::string count =
-        !is_adaptive(options) ? std::to_string(samples) : fmt::format("64 to {}", samples);
+    const std::string count = !is_adaptive(options)
+                                  ? std::to_string(samples)
+                                  : fmt::format("{} to {}", std::min(64, samples), samples);
     if (samples < standard_error_samples && !is_adaptive(options))
         fmt::print(stderr, "notice: fewer than {} samples: no standard-error layer\n",
                    standard_error_samples);
+    else if (settings.sequence_quanta > 0)
+        fmt::print(stderr, "notice: --one-sequence: no standard-error layer\n");
     fmt::print(stderr, "{}\n", backend.description());
     fmt::print(stderr, "{} x {}, {} samples, {} triangles, {} lights, effects: {}\n",
                settings.width, settings.height, count, scene.triangles.size(), settings.light_count,
@@ -81,15 +84,17 @@ ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
 
 void ProgressBar::show(const Progress& progress)
 {
-    const bool is_due = is_terminal_ ? progress.seconds - last_shown_ > 0.1
-                                     : progress.fraction - last_fraction_ >= 0.1;
-    if (!is_due && progress.fraction < 1) return;
+    const double since = progress.seconds - last_shown_;
+    const bool is_due =
+        is_terminal_ ? since > 0.1 : progress.fraction - last_fraction_ >= 0.1 || since > 30;
+    const bool is_end = progress.fraction >= 1 && last_fraction_ < 1;
+    if (!is_due && !is_end) return;
     last_shown_ = progress.seconds;
     last_fraction_ = progress.fraction;
     const std::string error =
         progress.error > 0 ? fmt::format("error {:.3g} JND  ", progress.error) : "";
     const std::string text =
-        fmt::format("{:3.0f} %  {} samples  {}{:.2f} Mrays/s  {} left", progress.fraction * 100,
+        fmt::format("{:3} %  {} samples  {}{:.2f} Mrays/s  {} left", int(progress.fraction * 100),
                     progress.samples, error, double(progress.rays) / progress.seconds * 1e-6,
                     duration(progress.seconds_left));
     if (is_terminal_) {
@@ -163,7 +168,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
         {"device", backend.description()},
         {"width", picture.width},
         {"height", picture.height},
-        {"samples", command.scene.samples},
+        {"samples", result.most_samples},
         {"complete", result.is_complete},
         {"render", result.seconds},
         {"setup", statistics.setup_seconds},
@@ -200,7 +205,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
                            {"block_p95", error->block_p95},
                            {"share_within", error->share_within},
                            {"share_unknown", error->share_unknown},
-                           {"blocks", result.blocks},
+                           {"blocks", error->blocks},
                            {"unfinished_blocks", result.unfinished_blocks},
                            {"rounds", result.schedule.round}};
     if (audited)
@@ -229,7 +234,7 @@ void add_metadata(image::Picture& picture, const RenderCommand& command, const S
     picture.metadata["program"] = "diptych " DIPTYCH_VERSION;
     picture.metadata["scene_sha256"] = scene_hash(scene);
     picture.metadata["backend"] = command.device.backend;
-    picture.metadata["samples"] = std::to_string(command.scene.samples);
+    picture.metadata["samples"] = std::to_string(result.most_samples);
     if (command.is_reproducible) return;
     picture.metadata["device"] = backend.description();
     picture.metadata["seconds"] = fmt::format("{:.3f}", result.seconds);

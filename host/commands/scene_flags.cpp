@@ -121,7 +121,7 @@ size_t parse_bytes(const std::string& flag, const std::string& text)
     std::string_view number = text;
     double unit = 1;
     if (!number.empty()) {
-        const size_t k = std::string_view("KMG").find(number.back());
+        const size_t k = std::string_view("KMGT").find(number.back());
         if (k != std::string_view::npos) {
             unit = std::ldexp(1.0, 10 * int(k + 1));
             number.remove_suffix(1);
@@ -143,6 +143,8 @@ void add_view_flags(CLI::App& app, SceneFlags& flags)
 {
     app.add_option("--size", flags.size, "Picture size, WxH in pixels")->capture_default_str();
     app.add_option("--samples", flags.samples, "Samples a pixel")->capture_default_str();
+    app.add_flag("--one-sequence", flags.is_one_sequence,
+                 "Take all samples of a pixel from one sequence: less noise, no standard error");
     app.add_option("--seed", flags.seed, "Another seed is another, independent noise")
         ->capture_default_str();
     app.add_option("--bounces", flags.bounces,
@@ -238,7 +240,12 @@ SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
     settings.max_bounces = load.solo.empty() ? bounces : 0;
     settings.filter = filter;
     settings.samples = flags.samples;
-    settings.sequence_quanta = is_adaptive ? 0 : sequence_quanta_of(flags.samples);
+    if (flags.is_one_sequence && is_adaptive)
+        throw std::runtime_error(
+            "--one-sequence: --error and --time need the standard error, which "
+            "one sequence does not know; leave it out");
+    settings.sequence_quanta =
+        is_adaptive ? 0 : sequence_quanta_of(flags.samples, !flags.is_one_sequence);
     settings.width = load.width;
     settings.height = load.height;
     return scene;
@@ -260,7 +267,15 @@ DeviceFlags with_device_list(const DeviceFlags& flags)
 {
     DeviceFlags listed = flags;
     const std::string& devices = flags.options.device;
-    if (!is_device_list(devices)) return listed;
+    if (!is_device_list(devices)) {
+        if (devices.empty() || flags.backend == "opencl") return listed;
+        if (flags.is_backend_given)
+            refuse("--device", devices,
+                   fmt::format("names an OpenCL device, not one of --backend {}; leave one out",
+                               flags.backend));
+        listed.backend = "opencl";
+        return listed;
+    }
     if (flags.is_backend_given && flags.backend != "cpu" && flags.backend != "opencl")
         refuse("--device", devices,
                fmt::format("only for OpenCL devices and cpu; leave out --backend {}, or the list",

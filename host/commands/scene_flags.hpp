@@ -22,6 +22,7 @@ struct SceneFlags {
     double fov_degrees = 45;
     double environment_rotation_degrees = 0;
     int samples = 64;
+    bool is_one_sequence = false;
     unsigned seed = 1;
     std::string bounces = "64";
     std::string filter = "blackman-harris";

@@ -107,9 +107,9 @@ BackendTimes measure_rows(const std::string& name, const BackendOptions& options
         running[r].backend = make_backend(name, small);
         running[r].backend->upload(running[r].scene);
         running[r].times.setup_seconds = running[r].backend->statistics().setup_seconds;
-        running[r].film =
-            std::make_unique<Film>(study.side, study.side, Window{0, 0, study.side, study.side},
-                                   batches_of(study.samples));
+        running[r].film = std::make_unique<Film>(
+            study.side, study.side, Window{0, 0, study.side, study.side},
+            batches_of(study.samples, running[r].scene.settings[0].sequence_quanta));
         at_once = std::min(
             at_once, size_t(std::max(1, running[r].backend->plan(running[r].scene).most_items)));
     }

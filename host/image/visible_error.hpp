@@ -9,6 +9,8 @@ namespace diptych::image {
 struct Viewer {
     float exposure = 0;  // stops
     View view = View::Standard;
+
+    bool operator==(const Viewer&) const = default;
 };
 
 // Side of the blocks that errors are summed up in: 16 pixels, and 8 below half a megapixel.

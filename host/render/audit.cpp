@@ -5,18 +5,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 namespace diptych {
 namespace {
 
-constexpr unsigned one_in = 16;
+constexpr size_t one_in = 16;
+constexpr size_t least_blocks = 8;
 constexpr int times_the_samples = 4;
 
 std::vector<size_t> chosen_blocks(size_t count)
 {
-    std::vector<size_t> chosen;
-    for (size_t b = 0; b < count; ++b)
-        if (count < 4 * one_in || hash_uint(uint(b)) % one_in == 0) chosen.push_back(b);
+    const size_t wanted = std::min(count, std::max(count / one_in, least_blocks));
+    std::vector<size_t> chosen(count);
+    std::iota(chosen.begin(), chosen.end(), size_t(0));
+    std::sort(chosen.begin(), chosen.end(),
+              [](size_t a, size_t b) { return hash_uint(uint(a)) < hash_uint(uint(b)); });
+    chosen.resize(wanted);
     return chosen;
 }
 
@@ -104,7 +109,9 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
     Tally all;
     int calm = 0, wrong = 0;
     std::vector<Tally> tallies;
-    for (const size_t b : chosen_blocks(grid.corners.size())) {
+    const std::vector<size_t> chosen = chosen_blocks(grid.corners.size());
+    audit.chosen = int(chosen.size());
+    for (const size_t b : chosen) {
         const int quanta = result.schedule.blocks[b].quanta;
         if (quanta == 0 || (options.stop && options.stop->load())) continue;
         const Quantum& last = plan[size_t(quanta) - 1];

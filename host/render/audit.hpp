@@ -7,6 +7,7 @@ namespace diptych {
 
 struct Audit {
     int blocks = 0;      // that were rendered again
+    int chosen = 0;      // that were to be
     double rms = 0;      // JND, of all their pixels
     double rms_low = 0;  // ends of its 95 % interval
     double rms_high = 0;
@@ -16,9 +17,9 @@ struct Audit {
     double seconds = 0;
 };
 
-// Renders about one block in sixteen anew, by another seed and four times the samples, and
-// compares. The noise that the new samples have themselves is taken off the RMS, not off the
-// shares. Uploads the scene again, and leaves it uploaded with its own seed.
+// Renders about one block in sixteen anew, eight or so at least, by another seed and four times the
+// samples, and compares. The noise that the new samples have themselves is taken off the RMS, not
+// off the shares. Uploads the scene again, and leaves it uploaded with its own seed.
 Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
             const RenderResult& result, double bar);
 

@@ -95,6 +95,7 @@ ErrorSummary summarise_error(const Film& film, const BlockGrid& grid, const imag
                              double target)
 {
     ErrorSummary summary;
+    summary.blocks = int(grid.corners.size());
     double square = 0, within = 0;
     for (const float bound : predicted_error(film, viewer)) {
         const double deviation = double(bound / confidence);

@@ -37,6 +37,7 @@ void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid,
 
 // What the film's error is expected to be.
 struct ErrorSummary {
+    int blocks = 0;
     double rms = 0;            // JND, one standard error
     double block_p95 = 0;      // JND; 95 % of the blocks predict less, at 95 % confidence
     double share_within = 1;   // of the pixels, expected to be nearer to the truth than the target

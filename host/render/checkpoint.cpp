@@ -73,11 +73,18 @@ Settings settings_from(const std::string& text)
 json json_of(const Slice& slice)
 {
     const Schedule& schedule = slice.schedule;
-    return {{"first", slice.first},          {"end", slice.end},
-            {"error", slice.error},          {"timed", slice.is_timed},
-            {"unbiased", slice.is_unbiased}, {"round", schedule.round},
-            {"level", schedule.level},       {"pilot", schedule.pilot},
-            {"turn", schedule.turn},         {"blocks", schedule.blocks.size()}};
+    return {{"first", slice.first},
+            {"end", slice.end},
+            {"error", slice.error},
+            {"timed", slice.is_timed},
+            {"unbiased", slice.is_unbiased},
+            {"round", schedule.round},
+            {"level", schedule.level},
+            {"pilot", schedule.pilot},
+            {"turn", schedule.turn},
+            {"blocks", schedule.blocks.size()},
+            {"exposure", slice.viewer.exposure},
+            {"view", int(slice.viewer.view)}};
 }
 
 Slice slice_from(const json& in)
@@ -88,6 +95,7 @@ Slice slice_from(const json& in)
     slice.error = in.at("error");
     slice.is_timed = in.at("timed");
     slice.is_unbiased = in.at("unbiased");
+    slice.viewer = {in.at("exposure"), image::View(in.at("view").get<int>())};
     slice.schedule.round = in.at("round");
     slice.schedule.level = in.at("level");
     slice.schedule.pilot = in.at("pilot");
@@ -300,8 +308,8 @@ private:
 
 Slice slice_of(const RenderOptions& options)
 {
-    return {options.first_sample, options.samples,        {},
-            options.error,        options.time_limit > 0, options.is_unbiased};
+    return {options.first_sample, options.samples, {}, options.error, options.time_limit > 0,
+            options.is_unbiased,  options.viewer};
 }
 
 std::vector<Quantum> plan_of(const Slice& slice)

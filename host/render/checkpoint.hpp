@@ -39,6 +39,7 @@ struct Slice {
     double error = 0;
     bool is_timed = false;
     bool is_unbiased = false;
+    image::Viewer viewer = {};  // for whom blocks are done
 };
 
 // What a render with these options will have done: nothing yet.

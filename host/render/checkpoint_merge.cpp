@@ -178,12 +178,13 @@ RenderState continued(Checkpoint checkpoint, const std::string& name, const Sett
         refuse("was rendered to another kind of target (--samples, --error, --time, --unbiased); "
                "ask for the same kind");
     const int whole = int(plan_of(wanted).size());
-    if (wanted.end != slice.end || wanted.error != slice.error)
+    if (wanted.end != slice.end || wanted.error != slice.error || wanted.viewer != slice.viewer)
         for (BlockState& block : slice.schedule.blocks) {
             block.is_done = false;
             block.target = std::min(block.target, whole);
         }
-    const int batches = is_adaptive(options) ? batch_count : batches_of(wanted.end);
+    const int batches =
+        is_adaptive(options) ? batch_count : batches_of(wanted.end, settings.sequence_quanta);
     return {with_batches(std::move(checkpoint.film), batches), std::move(slice.schedule)};
 }
 

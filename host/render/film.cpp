@@ -6,6 +6,9 @@
 namespace diptych {
 namespace {
 
+// log2: 4096 samples, so that pixels share no part of a sequence with any nearer than 1024.
+constexpr int most_sequence_quanta = 8;
+
 // x or y of entry k of a work item: the even bits of its Morton code.
 int even_bits(int k)
 {
@@ -38,13 +41,16 @@ std::vector<Value> padded(std::vector<Value> in, const Window& window, int width
 
 }  // namespace
 
-int batches_of(int end) { return std::clamp((end + QUANTUM - 1) / QUANTUM, 1, batch_count); }
+int batches_of(int end, int sequence_quanta)
+{
+    return sequence_quanta > 0 ? 1 : std::clamp((end + QUANTUM - 1) / QUANTUM, 1, batch_count);
+}
 
-int sequence_quanta_of(int samples)
+int sequence_quanta_of(int samples, bool is_error_wanted)
 {
     int quanta = 0;
-    if (samples < standard_error_samples)
-        while ((QUANTUM << quanta) < samples) ++quanta;
+    if (samples < standard_error_samples || !is_error_wanted)
+        while (quanta < most_sequence_quanta && (QUANTUM << quanta) < samples) ++quanta;
     return quanta;
 }
 
@@ -103,7 +109,7 @@ bool Film::add_pixel(size_t p, const WorkItem& item, const Dispatch& dispatch,
                      const Results& results, int r)
 {
     const size_t n = size_t(dispatch.results());
-    const size_t batch = size_t(item.first_sample) / QUANTUM % batch_count;
+    const size_t batch = data_.batches > 1 ? size_t(item.first_sample) / QUANTUM % batch_count : 0;
     const size_t b = p * size_t(data_.batches) + batch;
     bool is_finite = true;
     for (size_t c = 0; c < 3; ++c)

@@ -49,12 +49,14 @@ struct FilmData {
     std::vector<double> aov_values;  // [pixel][aov][4], summed
 };
 
-// How many batches the samples 0 to end - 1 fall into.
-int batches_of(int end);
+// How many batches the samples 0 to end - 1 fall into, where they are told apart: not in sequences
+// longer than a quantum.
+int batches_of(int end, int sequence_quanta);
 
 // Settings::sequence_quanta of a uniform render of so many samples a pixel: below
-// standard_error_samples no batches are told apart, and one sequence holds all samples.
-int sequence_quanta_of(int samples);
+// standard_error_samples, and where it is not asked for an error, one sequence holds all samples,
+// or the first of several that are as long as sequences can be.
+int sequence_quanta_of(int samples, bool is_error_wanted);
 
 class Film {
 public:

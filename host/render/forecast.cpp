@@ -7,6 +7,7 @@ namespace diptych {
 namespace {
 
 constexpr int least_quanta = 4;       // of a block: Targets::least_samples
+constexpr int unknown_quanta = 16;    // that a block will have, for all that is known
 constexpr double memory = 0.5;        // of the trend, from round to round
 constexpr double slowest_fall = 0.2;  // exponent; rare sparks let an error stand still for long
 
@@ -42,8 +43,10 @@ double Forecast::fraction(const Schedule& schedule, int target, int plan_length)
     double needed = 0, there = 0;
     for (size_t b = 0; b < schedule.blocks.size(); ++b) {
         const BlockState& block = schedule.blocks[b];
-        double quanta = std::max(std::min(least_quanta, plan_length), block.target);
-        if (!block.is_done && b < looks_.size() && looks_[b].quanta >= least_quanta) {
+        double quanta = block.target;
+        if (!block.is_done && (b >= looks_.size() || looks_[b].quanta < least_quanta)) {
+            quanta = std::max(quanta, double(unknown_quanta));
+        } else if (!block.is_done) {
             const double ratio = std::max(double(looks_[b].error) / target, 1.0);
             quanta = std::max(quanta, looks_[b].quanta * std::pow(ratio, 1 / exponent()));
         }

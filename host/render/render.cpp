@@ -27,9 +27,10 @@ Window window_of(const Settings& settings, const RenderOptions& options)
                          : Window{0, 0, settings.width, settings.height};
 }
 
-int film_batches(const RenderOptions& options)
+int film_batches(const Settings& settings, const RenderOptions& options)
 {
-    return is_adaptive(options) ? batch_count : batches_of(options.samples);
+    return is_adaptive(options) ? batch_count
+                                : batches_of(options.samples, settings.sequence_quanta);
 }
 
 bool is_known(const BlockError& error)
@@ -69,6 +70,7 @@ public:
                             backend_.statistics(), seconds_since(start_)};
         result.scheduling_seconds = scheduling_seconds_;
         result.blocks = int(grid_.corners.size());
+        result.most_samples = options_.samples;
         describe_ending(result, is_complete);
         return result;
     }
@@ -377,7 +379,8 @@ BlockGrid error_grid(const Settings& settings)
 
 size_t film_bytes(const SceneData& scene, const RenderOptions& options)
 {
-    return Film::bytes(window_of(scene.settings.at(0), options), film_batches(options),
+    const Settings& settings = scene.settings.at(0);
+    return Film::bytes(window_of(settings, options), film_batches(settings, options),
                        scene.textures.aovs.size());
 }
 
@@ -386,7 +389,7 @@ RenderState fresh_state(const SceneData& scene, const RenderOptions& options)
     const Settings& settings = scene.settings.at(0);
     const size_t blocks = grid_of(settings, options).corners.size();
     return {Film(settings.width, settings.height, window_of(settings, options),
-                 film_batches(options), scene.textures.aovs),
+                 film_batches(settings, options), scene.textures.aovs),
             {.blocks = std::vector<BlockState>(blocks)}};
 }
 

@@ -59,6 +59,7 @@ struct RenderResult {
     double target = 0;          // JND that all blocks were to reach when it ended; 0: uniform
     int unfinished_blocks = 0;  // above the target
     int blocks = 0;
+    int most_samples = 0;           // a pixel's, that the render would have ended at
     double scheduling_seconds = 0;  // merging, errors and decisions
 };
 

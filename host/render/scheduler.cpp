@@ -8,7 +8,7 @@
 
 namespace diptych {
 
-int error_of(const BlockError& error) { return std::max(error.rms, (error.worst_pixel + 2) / 3); }
+int error_of(const BlockError& error) { return std::max(error.rms, (error.worst_pixel + 3) / 4); }
 
 std::vector<Quantum> quanta_of(int first, int end)
 {

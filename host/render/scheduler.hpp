@@ -58,7 +58,8 @@ struct BlockError {
 };
 inline constexpr int error_unit = 1024;
 
-// How far it is from a target: the larger of the RMS and of a third of the worst pixel, rounded up.
+// How far it is from a target: the larger of the RMS and of a quarter of the worst pixel, rounded
+// up.
 int error_of(const BlockError& error);
 
 // Where a block stands; quanta and target count entries of the sample plan.
@@ -102,9 +103,9 @@ struct Targets {
 
 // The next round of the team whose turn it is, whose errors have been measured; the turn goes on.
 // Each block that is not done gets as many quanta as its error asks for, at most as many as it has.
-// A block is done when its error is at most the target, that of each of its pixels at most thrice
-// and those of all its neighbours at most twice the target, or when the plan ends. False when all
-// of the team are.
+// A block is done when its error is at most the target, that of each of its pixels at most four
+// times and those of all its neighbours at most twice the target, or when the plan ends. False when
+// all of the team are.
 //
 // With is_unbiased, and one team, the first least_samples of each block only say how many it needs;
 // schedule.pilot then becomes the number of quanta that the film is to forget.

@@ -62,6 +62,12 @@ TEST(CommandLine, MistakesAreToldInOneLine)
     expect_refusal({"selftest", "--backend", "twin"}, "twin");
     expect_refusal({"render", "--backend", "abacus", "--quiet"}, "abacus");
     expect_refusal({"render", "--debug-kernels"}, "--debug-kernels");
+    expect_refusal({"render", "--device", "abacus", "--quiet"}, "abacus");
+    expect_refusal({"render", "--backend", "cpu", "--device", "0", "--quiet"}, "--device");
+    expect_refusal({"farm", "--tasks", "2", "--samples", "64", "-o", "a.exr", "--error"},
+                   "--error");
+    expect_refusal({"farm", "--tasks", "2", "--samples", "64", "-o", "a.exr", "--size", "big"},
+                   "big");
 }
 
 TEST(CommandLine, DevicesAlwaysAnswers)

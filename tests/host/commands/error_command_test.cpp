@@ -50,6 +50,71 @@ TEST(ErrorCommand, WithoutAValueAimsAtOne)
     EXPECT_NE(limited.err.find("above 1 JND"), std::string::npos) << limited.err;
 }
 
+// What is done for one exposure is not for another.
+TEST(ErrorCommand, AnotherExposureGoesOnFromTheCheckpoint)
+{
+    const TestFolder folder;
+    const auto render = [&](const char* exposure) {
+        const Outcome outcome = run_diptych(
+            {"render", "--size", "48x32", "--error", "3", "--exposure", exposure, "--checkpoint",
+             folder / "a.checkpoint", "--json", "-", "-o", folder / "a.exr"});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        return nlohmann::json::parse(outcome.out);
+    };
+    const auto dark = render("-4"), bright = render("1"), again = render("1");
+    EXPECT_EQ(dark["error"]["unfinished_blocks"], 0);
+    EXPECT_GT(bright["paths"].get<long long>(), 0);
+    EXPECT_EQ(bright["error"]["unfinished_blocks"], 0);
+    EXPECT_EQ(again["paths"], 0) << "all is done";
+    EXPECT_EQ(again["sha256"]["beauty"], bright["sha256"]["beauty"]);
+}
+
+// The end is not in sight when the first decision falls.
+TEST(ErrorCommand, ProgressDoesNotReachTheEndAtTheFirstDecision)
+{
+    const TestFolder folder;
+    const Outcome outcome =
+        run_diptych({"render", "--size", "64x48", "--error", "0.7", "-o", folder / "a.png"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.text();
+    std::vector<int> percents;
+    for (const std::string& line : outcome.err_lines())
+        if (line.find(" Mrays/s  ") != std::string::npos) percents.push_back(std::stoi(line));
+    ASSERT_GT(percents.size(), 2u) << outcome.err;
+    for (size_t k = 1; k + 1 < percents.size(); ++k) EXPECT_LT(percents[k], 100) << outcome.err;
+    EXPECT_LT(percents[0], 50) << outcome.err;
+}
+
+TEST(ErrorCommand, OneSequenceIsLessNoisyAndKnowsNoError)
+{
+    const TestFolder folder;
+    const auto render = [&](const std::string& name, std::vector<std::string> words) {
+        words.insert(words.begin(), {"render", "--size", "32x32", "-o", folder / name});
+        const Outcome outcome = run_diptych(words);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        return image::read_picture(folder / name);
+    };
+    const image::Picture truth =
+        render("truth.exr", {"--samples", "4096", "--seed", "9", "--one-sequence"});
+    const image::Picture one = render("one.exr", {"--samples", "256", "--one-sequence"});
+    const image::Picture eight = render("eight.exr", {"--samples", "256"});
+    EXPECT_EQ(image::find_layer(one, "standard_error"), nullptr);
+    EXPECT_NE(image::find_layer(eight, "standard_error"), nullptr);
+    const auto square_error = [&](const image::Picture& picture) {
+        const std::vector<float>&a = image::beauty_of(picture).pixels,
+              &b = image::beauty_of(truth).pixels;
+        double sum = 0;
+        for (size_t k = 0; k < a.size(); ++k) sum += double(a[k] - b[k]) * double(a[k] - b[k]);
+        return sum;
+    };
+    EXPECT_LT(square_error(one), 0.8 * square_error(eight));
+    for (const char* flag : {"--error", "--audit"})
+        EXPECT_EQ(run_diptych({"render", "--size", "32x32", "--samples", "256", "--one-sequence",
+                               flag, "-o", folder / "a.png"})
+                      .exit_code,
+                  2)
+            << flag;
+}
+
 TEST(ErrorCommand, ATimeLimitEndsByTheClockWithAPicture)
 {
     const TestFolder folder;
