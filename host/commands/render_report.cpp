@@ -208,7 +208,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
                            {"blocks", error->blocks},
                            {"unfinished_blocks", result.unfinished_blocks},
                            {"rounds", result.schedule.round}};
-    if (audited)
+    if (audited && audited->blocks > 0)
         report["audit"] = {{"blocks", audited->blocks},
                            {"rms", audited->rms},
                            {"rms_low", audited->rms_low},

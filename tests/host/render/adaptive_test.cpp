@@ -161,6 +161,41 @@ TEST(Adaptive, WhatNobodyMeasuredIsNotCalledRight)
     EXPECT_EQ(summarise_error(judged.film, grid, options.viewer, 1).share_unknown, 0);
 }
 
+// Where blocks meet the error changes no more from pixel to pixel than within them.
+TEST(Adaptive, BlockEdgesDoNotShow)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::unique_ptr<Backend> backend = make_backend("cpu", {});
+    backend->upload(scene);
+    const RenderOptions options = to_error(1.5);
+    const RenderResult result = render(*backend, scene, options);
+    RenderOptions longer;
+    longer.samples = 4096;
+    scene.settings[0].seed = 77;
+    backend->upload(scene);
+    const RenderResult reference = render(*backend, scene, longer);
+    const auto error = [&](int x, int y) {
+        return double(image::lightness(result.film.radiance(x, y), options.viewer) -
+                      image::lightness(reference.film.radiance(x, y), options.viewer));
+    };
+    const int side = image::error_block_side(72, 40);
+    double square[2] = {0, 0};  // of steps within blocks, and from one to the next
+    int steps[2] = {0, 0};
+    const auto add = [&](double step, bool is_across) {
+        square[is_across] += step * step;
+        ++steps[is_across];
+    };
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 72; ++x) {
+            if (x > 0) add(error(x, y) - error(x - 1, y), x % side == 0);
+            if (y > 0) add(error(x, y) - error(x, y - 1), y % side == 0);
+        }
+    EXPECT_GT(steps[1], 500);
+    const double ratio = square[1] / steps[1] / (square[0] / steps[0]);
+    EXPECT_GT(ratio, 0.7);
+    EXPECT_LT(ratio, 1.3);
+}
+
 TEST(Adaptive, APixelsFilmIsOnePixel)
 {
     const SceneData scene = busy_scene(72, 40);
