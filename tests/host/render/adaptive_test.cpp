@@ -170,7 +170,7 @@ TEST(Adaptive, BlockEdgesDoNotShow)
     const RenderOptions options = to_error(1.5);
     const RenderResult result = render(*backend, scene, options);
     RenderOptions longer;
-    longer.samples = 4096;
+    longer.samples = 1024;
     scene.settings[0].seed = 77;
     backend->upload(scene);
     const RenderResult reference = render(*backend, scene, longer);
