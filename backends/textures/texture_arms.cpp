@@ -63,7 +63,8 @@ std::string number(uint word, char kind)
 // One element of the type, whose words begin at `word`, as a constant expression.
 std::string element(const Words& words, int word, const TextureArgument& argument)
 {
-    if (argument.type == "sam2D") return std::string("{") + std::to_string(words.at(word)) + "}";
+    if (argument.type == "sam2D")  // its number counts from 1
+        return std::string("{") + std::to_string(words.at(word) + 1) + "}";
     const char kind = argument.type[0];
     const int width = width_of(argument);
     std::string text;
