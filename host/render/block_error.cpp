@@ -77,9 +77,10 @@ std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid,
 double block_p95(std::vector<BlockError> errors)
 {
     const auto p95 = errors.begin() + std::ptrdiff_t((errors.size() - 1) * 95 / 100);
-    std::nth_element(errors.begin(), p95, errors.end(),
-                     [](const BlockError& a, const BlockError& b) { return a.rms < b.rms; });
-    return double(p95->rms) / error_unit;
+    std::nth_element(
+        errors.begin(), p95, errors.end(),
+        [](const BlockError& a, const BlockError& b) { return error_of(a) < error_of(b); });
+    return double(error_of(*p95)) / error_unit;
 }
 
 void measure_team(Schedule& schedule, const Film& film, const BlockGrid& grid,

@@ -28,7 +28,7 @@ BlockError block_error(const Film& film, const image::Viewer& viewer, Pixel corn
 // Of each block.
 std::vector<BlockError> block_errors(const Film& film, const BlockGrid& grid,
                                      const image::Viewer& viewer);
-// 95 % of the blocks have less, in JND.
+// 95 % of the blocks have less, in JND: error_of, by which blocks are done.
 double block_p95(std::vector<BlockError> errors);
 
 // The same, of the blocks that are not done of the team whose turn it is, into their states.
