@@ -108,9 +108,8 @@ TEST(Scheduler, AsksForWhatTheErrorNeedsAndAtMostDoubles)
     const std::vector<Quantum> plan = quanta_of(16 * 64);
     Schedule schedule = rendered(grid, 16);
     // the root law: 1.25 times the error is 1.5625 times the samples, 9 quanta more
-    set_errors(
-        schedule,
-        {{one * 5 / 4, 0}, {9 * one, 0}, {one / 2, 5 * one}, {one / 2, 0}, {0, 0}});
+    set_errors(schedule,
+               {{one * 5 / 4, 0}, {9 * one, 0}, {one / 2, 5 * one}, {one / 2, 0}, {0, 0}});
     ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, {}));
     EXPECT_EQ(schedule.blocks[0].target, 25);
     EXPECT_EQ(schedule.blocks[1].target, 32);
