@@ -6,7 +6,7 @@
 namespace diptych {
 namespace {
 
-constexpr int least_quanta = 4;       // of a block: Targets::least_samples
+constexpr int least_quanta = Targets{}.least_samples / QUANTUM;  // of a block
 constexpr int unknown_quanta = 16;    // that a block will have, for all that is known
 constexpr double memory = 0.5;        // of the trend, from round to round
 constexpr double slowest_fall = 0.2;  // exponent; rare sparks let an error stand still for long
@@ -40,6 +40,7 @@ double Forecast::exponent() const
 
 double Forecast::fraction(const Schedule& schedule, int target, int plan_length) const
 {
+    const double power = 1 / exponent();
     double needed = 0, there = 0;
     for (size_t b = 0; b < schedule.blocks.size(); ++b) {
         const BlockState& block = schedule.blocks[b];
@@ -48,7 +49,7 @@ double Forecast::fraction(const Schedule& schedule, int target, int plan_length)
             quanta = std::max(quanta, double(unknown_quanta));
         } else if (!block.is_done) {
             const double ratio = std::max(double(looks_[b].error) / target, 1.0);
-            quanta = std::max(quanta, looks_[b].quanta * std::pow(ratio, 1 / exponent()));
+            quanta = std::max(quanta, looks_[b].quanta * std::pow(ratio, power));
         }
         needed += std::min(quanta, double(plan_length));
         there += block.quanta;
