@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -373,8 +374,9 @@ void EmbreeScene::occlusion_of_neighbours(const SceneView& scene_view, const Pat
     }
     const int n = paths.capacity;
     for (int first = 0; first < count; first += width) {
+        // as vectors: Embree reads them as such, and would wait for single stores
         const auto copy = [first](float(&to)[width], const float* plane) {
-            for (int k = 0; k < width; ++k) to[k] = plane[first + k];
+            std::memcpy(to, plane + first, sizeof to);
         };
         copy(packet.org_x, paths.shadow_origin);
         copy(packet.org_y, paths.shadow_origin + n);

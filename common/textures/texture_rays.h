@@ -77,9 +77,11 @@ SHARED TextureRay texture_ray(TexturePlace place, uint seed, int hemisphere, int
     key.index = (uint)ray;
     key.seed = seed;
     const float2 u = sample_pair(key, 0);
-    const int is_lower =
-        (hemisphere == HEMISPHERE_LOWER) | ((hemisphere == HEMISPHERE_BOTH) & ((ray & 1) != 0));
-    const float side = (is_lower ? -1.0f : 1.0f) * (place.is_front ? 1.0f : -1.0f);
+    // In whole numbers: a truth that is the same for all rays would keep loops over them scalar.
+    const int always = hemisphere == HEMISPHERE_LOWER ? 1 : 0;
+    const int every_second = hemisphere == HEMISPHERE_BOTH ? 1 : 0;
+    const int is_lower = always | (ray & every_second);
+    const float side = (float)(1 - 2 * is_lower) * (place.is_front ? 1.0f : -1.0f);
     const float3 normal = place.normal * side;
     const float3 face_normal = place.face_normal * side;
     const float turn = 2.0f * u.y;

@@ -1,6 +1,7 @@
-"""Every loop of every shared stage runs over paths in 256- or 512-bit vectors.
+"""Every loop of every shared stage runs over paths in 256- or 512-bit vectors, and so do those of texture rays.
 
-Usage: vectorised_test.py STAGES_OBJECT   (kernels_cpu/stages.cpp compiled for the vector kernels)
+Usage: vectorised_test.py OBJECTS   (a list with ; of kernels_cpu/stages.cpp and texture_ray_loops.cpp compiled for
+the vector kernels)
 
 A loop that the compiler leaves scalar still has a few wide moves, which copy structures, but no wide
 arithmetic; so arithmetic, comparisons and gathers on wide registers are counted in the machine code
@@ -16,6 +17,8 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 LEAST = 6
 # Only adds up memory, and has a loop over layers in each path's turn, which g++ leaves scalar.
 SCALAR = {"accumulate_aovs"}
+# The loops of texture_ray_loops.cpp; texture_rays only hands its requests to store_rays.
+RAY_LOOPS = ("texture_programs", "texture_places", "store_rays")
 # Operations on one number at a time: in a loop in lanes those of constants, and of the last few paths.
 SINGLE = re.compile(r"v(add|sub|mul|div|sqrt|min|max|comi|ucomi|cmp\w*)ss\b")
 # Instructions that only bring values to their places.
@@ -27,15 +30,15 @@ def shared_stages():
         return [stage for stage in re.findall(r"X\((\w+), shared,", text.read()) if stage not in SCALAR]
 
 
-def wide_operations(path):
-    """(stage, variant) -> numbers of wide and of single operations in the machine code of its loop."""
+def wide_operations(path, pattern):
+    """(name, variant) -> numbers of wide and of single operations in the machine code of its loop."""
     command = ["objdump", "-d", "--no-show-raw-insn", "-C", path]
     code = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     counts, current = {}, None
     for line in code.splitlines():
         if line.endswith(">:"):
-            found = re.search(r"(\w+)_loop<(\d+)>", line)
-            current = (found[1], int(found[2])) if found else None
+            found = re.search(pattern, line)
+            current = (found[1], int(found[2] or 0)) if found else None
             if current:
                 counts[current] = [0, 0]
         elif current:
@@ -64,21 +67,28 @@ def has_avx2():
         return " avx2 " in text.read()
 
 
-def main(path):
-    reason = reason_to_skip(path)
-    if reason:
-        print(f"skipped: {reason}")
-        return 77
-    counts = wide_operations(path)
+def report(names, counts):
+    """Prints how each loop is, and returns how many are not as they should be."""
     failed = 0
-    for stage in shared_stages():
-        loops = {variant: count for (name, variant), count in counts.items() if name == stage}
+    for name in names:
+        loops = {variant: count for (of, variant), count in counts.items() if of == name}
         scalar = sorted(variant for variant, (wide, single) in loops.items() if wide < max(LEAST, single / 4))
         failed += not loops or bool(scalar)
         said = "vectorised" if loops and not scalar else f"not vectorised: variants {scalar} of {len(loops)}"
         wide, single = min(loops.values(), default=(0, 0))
-        print(f"{stage}: {said} (at least {wide} wide operations, {single} single ones)")
+        print(f"{name}: {said} (at least {wide} wide operations, {single} single ones)")
+    return failed
+
+
+def main(objects):
+    stages, rays = (next(path for path in objects if name in path) for name in ("/stages.cpp", "/texture_ray_loops.cpp"))
+    reason = reason_to_skip(stages)
+    if reason:
+        print(f"skipped: {reason}")
+        return 77
+    failed = report(shared_stages(), wide_operations(stages, r"(\w+)_loop<(\d+)>"))
+    failed += report(RAY_LOOPS, wide_operations(rays, f"({'|'.join(RAY_LOOPS)})(?:<(\\d+)u?>)?\\("))
     return int(failed > 0)
 
 
-sys.exit(main(next(path for path in sys.argv[1].split(";") if "/stages.cpp" in path)))
+sys.exit(main(sys.argv[1].split(";")))
