@@ -82,6 +82,7 @@ private:
 
 constexpr int sample_none = -1;     // as in kernels_cl/arguments.h
 constexpr int entries_a_slot = 32;  // of a list: fewer leave its slots idle at the end too long
+constexpr int steps_to_refill = 2;  // the device waits for the host then; an entry lives for dozens
 constexpr int steps_to_leave = 8;   // for the host's next list; leaving copies sums out and back
 constexpr int least_slots_of_cpu = 1 << 13;
 constexpr int least_slots_a_unit = 1 << 11;
@@ -207,7 +208,7 @@ int OpenclBackend::advance(const Dispatch& dispatch, const Pace& pace, Results& 
         const Wish wish = pace.wish ? pace.wish() : Wish::go_on;
         const int whole = (1 << dispatch.pixel_shift) - 1;
         if (wish == Wish::finish) end = std::min(end, (begun_ + whole) & ~whole);
-        refill(end);
+        if (begun_ == end || step % steps_to_refill == 0) refill(end);
         const bool is_list_short = pace.following > 0 && wish == Wish::go_on && begun_ == end &&
                                    live_ < slots_ - slots_ / 8 && step % steps_to_leave == 0;
         is_left = live_ > 0 && (wish == Wish::leave || is_list_short);

@@ -12,29 +12,21 @@
 #define NOTHING_int 0
 #define CLEAR_RESULT(type, name) set_##name(paths, entry, NOTHING_##type);
 
-// The slot's next path is the first sample of a result entry. Outside the picture the slot stays
-// free.
-static void begin_entry(const Scene* scene, const Paths* paths, int slot, int entry)
+// The slot's next path is the first sample of a result entry.
+static PathPlace begin_entry(const Paths* paths, int entry)
 {
-    const int item = entry >> paths->pixel_shift;
     RESULT_BUFFERS(CLEAR_RESULT)
     set_object_id(paths, entry, -1);
     set_material_id(paths, entry, -1);
-    generate_path(scene, paths, slot, item, entry & ((1 << paths->pixel_shift) - 1), 0);
-    if (get_depth(paths, slot) < 0) set_sample(paths, slot, SAMPLE_NONE);
+    return place_of_entry(paths, entry, 0);
 }
 
-// The stages at the end have summed the slot's path up, if it has ended.
-static void follow_up(const Scene* scene, const Paths* paths, int slot)
+// The stages at the end have summed the slot's path up; its next one is its pixel's next sample.
+static PathPlace follow_up(const Paths* paths, int slot)
 {
     const int entry = get_entry(paths, slot);
-    const int item = entry >> paths->pixel_shift;
-    const int next = get_sample(paths, slot) - paths->items[item].first_sample + 1;
-    if (!has_ended(paths, slot)) return;
-    if (next < paths->samples)
-        generate_path(scene, paths, slot, item, entry & ((1 << paths->pixel_shift) - 1), next);
-    else
-        set_sample(paths, slot, SAMPLE_NONE);
+    const int first_sample = paths->items[entry >> paths->pixel_shift].first_sample;
+    return place_of_entry(paths, entry, get_sample(paths, slot) - first_sample + 1);
 }
 
 __kernel __attribute__((reqd_work_group_size(GROUP_SIZE, 1, 1))) void
@@ -44,11 +36,14 @@ generate_paths_entry(KERNEL_ARGUMENTS)
     const int k = (int)get_global_id(0);
     if (k < count) {
         const int slot = is_compacted ? live[first + k] : first + k;
-        if (next_entry == EVERY_PATH)
-            generate_paths(&scene, &paths, slot);
-        else if (next_entry == FOLLOW_UP)
-            follow_up(&scene, &paths, slot);
-        else
-            begin_entry(&scene, &paths, slot, next_entry + first + k);
+        if (next_entry == FOLLOW_UP && !has_ended(&paths, slot)) return;
+        const PathPlace place = next_entry == EVERY_PATH ? place_of_path(&paths, slot)
+                                : next_entry == FOLLOW_UP
+                                    ? follow_up(&paths, slot)
+                                    : begin_entry(&paths, next_entry + first + k);
+        // Called at one place: where it is not inlined, every slot builds the views in memory.
+        if (place.in_quantum < samples) generate_path(&scene, &paths, slot, place);
+        const int is_outside = next_entry >= 0 && get_depth(&paths, slot) < 0;
+        if (is_outside || place.in_quantum >= samples) set_sample(&paths, slot, SAMPLE_NONE);
     }
 }

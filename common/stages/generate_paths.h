@@ -5,14 +5,38 @@
 #include "common/filter.h"
 #include "common/random.h"
 
-// Path i becomes a sample of a pixel: of a work item, and of its samples the one numbered
-// `in_quantum`.
-SHARED void generate_path(const Scene* scene, const Paths* paths, int i, int item, int in_item,
-                          int in_quantum)
+// A sample of a pixel: of a work item, and of its samples the one numbered `in_quantum`.
+typedef struct {
+    int item;
+    int in_item;  // the pixel, in Morton order
+    int in_quantum;
+} PathPlace;
+
+SHARED PathPlace place_of_entry(const Paths* paths, int entry, int in_quantum)
 {
-    const int x = paths->items[item].x + compact_bits((uint)in_item);
-    const int y = paths->items[item].y + compact_bits((uint)in_item >> 1);
-    const int sample = paths->items[item].first_sample + in_quantum;
+    PathPlace place;
+    place.item = entry >> paths->pixel_shift;
+    place.in_item = entry & ((1 << paths->pixel_shift) - 1);
+    place.in_quantum = in_quantum;
+    return place;
+}
+
+// Of path i of a dispatch where every path has a place of its own.
+SHARED PathPlace place_of_path(const Paths* paths, int i)
+{
+    const int sample_of_all = i >> paths->pixel_shift;
+    PathPlace place;
+    place.item = (int)((float)sample_of_all * (1.0f / (float)paths->samples));
+    place.in_item = i & ((1 << paths->pixel_shift) - 1);
+    place.in_quantum = sample_of_all & (paths->samples - 1);
+    return place;
+}
+
+SHARED void generate_path(const Scene* scene, const Paths* paths, int i, PathPlace place)
+{
+    const int x = paths->items[place.item].x + compact_bits((uint)place.in_item);
+    const int y = paths->items[place.item].y + compact_bits((uint)place.in_item >> 1);
+    const int sample = paths->items[place.item].first_sample + place.in_quantum;
     const int pixel = x | y << 16;
     const int is_inside = (x < scene->settings[0].width) & (y < scene->settings[0].height);
 
@@ -24,7 +48,7 @@ SHARED void generate_path(const Scene* scene, const Paths* paths, int i, int ite
 
     set_pixel(paths, i, pixel);
     set_sample(paths, i, sample);
-    set_entry(paths, i, item << paths->pixel_shift | in_item);
+    set_entry(paths, i, place.item << paths->pixel_shift | place.in_item);
     set_depth(paths, i, is_inside ? 0 : -1);
     set_ray_origin(paths, i, ray.origin);
     set_ray_direction(paths, i, ray.direction);
@@ -36,9 +60,5 @@ SHARED void generate_path(const Scene* scene, const Paths* paths, int i, int ite
 // Every path of a dispatch at once.
 SHARED void generate_paths(const Scene* scene, const Paths* paths, int i)
 {
-    const int in_item = i & ((1 << paths->pixel_shift) - 1);
-    const int sample_of_all = i >> paths->pixel_shift;
-    const int item = (int)((float)sample_of_all * (1.0f / (float)paths->samples));
-    const int in_quantum = sample_of_all & (paths->samples - 1);
-    generate_path(scene, paths, i, item, in_item, in_quantum);
+    generate_path(scene, paths, i, place_of_path(paths, i));
 }
