@@ -53,9 +53,16 @@ struct Plan {
     // So many a call of trace() takes.
     int items = 0;
     int most_items = 0;  // that a dispatch may have: the slots of paths that end take the next ones
-    size_t scene_bytes = 0;      // buffers of the scene, on the device
-    size_t path_bytes = 0;       // path state and results
+    size_t scene_bytes = 0;      // buffers of the scene, on the device, but for the next two
+    size_t texture_bytes = 0;    // texels
     size_t structure_bytes = 0;  // acceleration structure, estimated where a library builds it
+    size_t path_bytes = 0;       // path state
+    size_t film_bytes = 0;       // blocks of the film that paths are summed in, on the device
+
+    size_t bytes() const
+    {
+        return scene_bytes + texture_bytes + structure_bytes + path_bytes + film_bytes;
+    }
 };
 
 // What one of several devices has rendered.

@@ -46,8 +46,8 @@ public:
     Plan plan(const SceneData& scene) const override
     {
         Plan plan;
-#define ADD_BYTES(type, name) plan.scene_bytes += scene.name.size() * sizeof(type);
-        SCENE_BUFFERS(ADD_BYTES)
+        plan.texture_bytes = texel_bytes_of(scene);
+        plan.scene_bytes = bytes_of(scene) - plan.texture_bytes;
         // Embree's high-quality tree takes about 100 bytes a triangle, ours 64 a node and 4 an
         // item.
         plan.structure_bytes = scene.triangles.size() * (uses_embree_ ? 100 : 40);
@@ -66,7 +66,8 @@ public:
         // Beyond some hundred items a dispatch gains nothing: they run one after the other anyway.
         plan.items = int(std::clamp<size_t>(room / (4 * result_bytes), 1, 128));
         plan.most_items = plan.items;
-        plan.path_bytes = fixed + size_t(plan.items) * result_bytes;
+        plan.path_bytes = fixed;
+        plan.film_bytes = size_t(plan.items) * result_bytes;
         return plan;
     }
 

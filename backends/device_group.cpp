@@ -109,8 +109,10 @@ Plan DeviceGroup::plan(const SceneData& scene) const
         sum.items += plan.items;
         sum.most_items += pieces_ahead * piece_items(plan);
         sum.scene_bytes += plan.scene_bytes;
-        sum.path_bytes += plan.path_bytes;
+        sum.texture_bytes += plan.texture_bytes;
         sum.structure_bytes += plan.structure_bytes;
+        sum.path_bytes += plan.path_bytes;
+        sum.film_bytes += plan.film_bytes;
     }
     return sum;
 }

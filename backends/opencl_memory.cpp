@@ -102,15 +102,6 @@ size_t widest_buffer(const SceneData& scene, int results_a_slot)
                      widest(results, result_rows()), widest(results, texture_result_rows(scene))});
 }
 
-size_t scene_bytes(const SceneData& scene)
-{
-    size_t bytes = 0;
-#define ADD_BYTES(type, name) bytes += scene.name.size() * sizeof(type);
-    SCENE_BUFFERS(ADD_BYTES)
-#undef ADD_BYTES
-    return bytes;
-}
-
 // The tree that upload() will build where the scene has none yet: about one node for two triangles.
 size_t structure_bytes(const SceneData& scene)
 {
@@ -290,9 +281,10 @@ Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory
     SCENE_BUFFERS(CHECK_ROW)
 #undef CHECK_ROW
     Plan plan;
-    plan.scene_bytes = scene_bytes(scene);
+    plan.texture_bytes = texel_bytes_of(scene);
+    plan.scene_bytes = bytes_of(scene) - plan.texture_bytes;
     plan.structure_bytes = structure_bytes(scene);
-    const size_t taken = plan.scene_bytes + plan.structure_bytes;
+    const size_t taken = plan.bytes();
     const size_t budget = std::min(memory_bytes, device.memory_bytes);
     const auto needed = [&](int results_a_slot) {
         return slots_bytes(scene) + size_t(listed_items(1, results_a_slot)) * listed_bytes(scene);
@@ -319,8 +311,8 @@ Plan plan_memory(const DeviceInfo& device, const SceneData& scene, size_t memory
         items_of(results_per_slot) > 0 ? results_per_slot : least_results_per_slot;
     plan.items = items_of(results_a_slot);
     plan.most_items = listed_items(plan.items, results_a_slot);
-    plan.path_bytes =
-        size_t(plan.items) * slots_bytes(scene) + size_t(plan.most_items) * listed_bytes(scene);
+    plan.path_bytes = size_t(plan.items) * slots_bytes(scene);
+    plan.film_bytes = size_t(plan.most_items) * listed_bytes(scene);
     return plan;
 }
 

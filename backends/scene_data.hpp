@@ -28,6 +28,21 @@ struct SceneData {
     size_t degenerate_triangles = 0;   // dropped: zero area
 };
 
+// Bytes of the buffers as they are now.
+inline size_t bytes_of(const SceneData& scene)
+{
+    size_t bytes = 0;
+#define ADD_BYTES(type, name) bytes += scene.name.size() * sizeof(type);
+    SCENE_BUFFERS(ADD_BYTES)
+#undef ADD_BYTES
+    return bytes;
+}
+
+inline size_t texel_bytes_of(const SceneData& scene)
+{
+    return scene.texels_8.size() * sizeof(uint) + scene.texels_float.size() * sizeof(float4);
+}
+
 // How many planes each row of TEXTURE_BUFFERS has, and of TEXTURE_RESULT_BUFFERS.
 inline std::array<int, 7> texture_planes(const SceneData& scene)
 {

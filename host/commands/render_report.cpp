@@ -73,11 +73,13 @@ void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan
     fmt::print(stderr, "{} x {}, {} samples, {} triangles, {} lights, effects: {}\n",
                settings.width, settings.height, count, scene.triangles.size(), settings.light_count,
                fmt::join(effect_names(scene.effects), " "));
-    fmt::print(stderr,
-               "memory: scene {}, structure about {}, paths {} ({} at once), film {} on the host\n",
-               megabytes(plan.scene_bytes), megabytes(plan.structure_bytes),
-               megabytes(plan.path_bytes), plan.items * QUANTUM << (2 * BLOCK_SHIFT),
-               megabytes(film_bytes(scene, options)));
+    fmt::print(
+        stderr,
+        "memory: geometry {}, textures {}, structure about {}, paths {} ({} at once), film {} "
+        "in blocks; film {} on the host\n",
+        megabytes(plan.scene_bytes), megabytes(plan.texture_bytes), megabytes(plan.structure_bytes),
+        megabytes(plan.path_bytes), plan.items * QUANTUM << (2 * BLOCK_SHIFT),
+        megabytes(plan.film_bytes), megabytes(film_bytes(scene, options)));
 }
 
 ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -178,9 +180,12 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
         {"undecided_rays", statistics.undecided_rays},
         {"paths", statistics.paths},
         {"memory",
-         {{"scene", result.plan.scene_bytes},
+         {{"geometry", result.plan.scene_bytes},
+          {"textures", result.plan.texture_bytes},
           {"structure", result.plan.structure_bytes},
           {"paths", result.plan.path_bytes},
+          {"film_blocks", result.plan.film_bytes},
+          {"planned", result.plan.bytes()},
           {"allocated", statistics.allocated_bytes},
           {"film", Film::bytes(result.film.data().window, result.film.data().batches,
                                result.film.data().aovs.size())}}},

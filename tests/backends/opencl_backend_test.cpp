@@ -300,7 +300,7 @@ TEST_F(OpenclBackendTest, PlansWithinTheMemoryWhateverThePicture)
     on_each_device({}, [&](Backend& backend) {
         const Plan plan = backend.plan(scene);
         EXPECT_GE(plan.items, 1);
-        EXPECT_LE(plan.scene_bytes + plan.path_bytes + plan.structure_bytes, 512u << 20);
+        EXPECT_LE(plan.bytes(), 512u << 20);
         scene.settings[0].width = scene.settings[0].height = 16384;
         EXPECT_EQ(backend.plan(scene).items, plan.items);
     });
@@ -316,7 +316,7 @@ TEST_F(OpenclBackendTest, AllocatesAsMuchFor1MegapixelAsFor64)
             const Results results = render(backend, scene, {corners[0], corners[1]}, 1);
             EXPECT_EQ(results.sum_alpha.size(), 512u);
             const Plan plan = backend.plan(scene);
-            const size_t planned = plan.scene_bytes + plan.structure_bytes + plan.path_bytes;
+            const size_t planned = plan.bytes();
             const size_t bytes = backend.statistics().allocated_bytes;
             EXPECT_LE(bytes, planned + 1024);  // an element where the scene has none
             EXPECT_GT(double(bytes), 0.95 * double(planned));
