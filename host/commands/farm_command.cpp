@@ -198,11 +198,25 @@ bool watch(const FarmCommand& command, const Folder& folder, const Jobs& jobs)
     return true;
 }
 
-bool are_newer(const std::vector<std::string>& paths, fs::file_time_type begin)
+// When each was written; the least time: never. Only compared for being the same: clocks of many
+// machines need not agree, nor go forwards.
+std::vector<fs::file_time_type> times_of(const std::vector<std::string>& paths)
 {
-    std::error_code error;
-    for (const std::string& path : paths)
-        if (fs::last_write_time(path, error) < begin || error) return false;
+    std::vector<fs::file_time_type> times;
+    for (const std::string& path : paths) {
+        std::error_code error;
+        const fs::file_time_type time = fs::last_write_time(path, error);
+        times.push_back(error ? fs::file_time_type::min() : time);
+    }
+    return times;
+}
+
+bool are_written_since(const std::vector<std::string>& paths,
+                       const std::vector<fs::file_time_type>& before)
+{
+    const std::vector<fs::file_time_type> now = times_of(paths);
+    for (size_t k = 0; k < now.size(); ++k)
+        if (now[k] == before[k]) return false;
     return true;
 }
 
@@ -242,8 +256,7 @@ int run_farm_command(const FarmCommand& command)
 {
     check(command);
     const Folder folder = make_folder(command);
-    std::ofstream(folder.path / "begun").put('\n');  // by the clock of the files
-    const fs::file_time_type begin = fs::last_write_time(folder.path / "begun");
+    const std::vector<fs::file_time_type> before = times_of(command.outputs);
     const Jobs jobs = submit(command, folder);
     fmt::print(stderr, "job {}: {} tasks; job {} merges them; checkpoints and logs in {}\n",
                jobs.render, command.tasks, jobs.merge, folder.path.string());
@@ -253,7 +266,7 @@ int run_farm_command(const FarmCommand& command)
                    jobs.render, jobs.merge);
         return 130;
     }
-    if (!are_newer(command.outputs, begin)) tell_what_failed(command, folder);
+    if (!are_written_since(command.outputs, before)) tell_what_failed(command, folder);
     for (const std::string& path : command.outputs) fmt::print(stderr, "wrote {}\n", path);
     return 0;
 }

@@ -8,7 +8,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
+#include <stdexcept>
 
 namespace diptych {
 namespace {
@@ -70,6 +72,17 @@ Checkpoint read_merged(const MergeCommand& command)
     return std::move(*all);
 }
 
+// A slice that is overwritten can no longer be gone on with.
+void expect_no_input(const std::string& output, const std::vector<std::string>& inputs)
+{
+    for (const std::string& input : inputs) {
+        std::error_code ignored;
+        if (std::filesystem::equivalent(input, output, ignored))
+            throw std::runtime_error(output + ": is one of the checkpoints to merge, which would "
+                                              "be lost; name another file by -o");
+    }
+}
+
 void write_as_checkpoint(const std::string& path, const Checkpoint& checkpoint)
 {
     const FileLock lock(path);
@@ -103,20 +116,23 @@ CLI::App* add_merge_command(CLI::App& app, MergeCommand& command)
 int run_merge_command(const MergeCommand& command)
 {
     const image::WriteOptions write = picture_options(command.view, command.write);
-    for (const std::string& path : command.outputs) image::check_file_writable(path);
+    std::vector<std::string> pictures, checkpoints;
+    for (const std::string& path : command.outputs) {
+        expect_no_input(path, command.inputs);
+        image::check_file_writable(path);
+        (image::is_picture_name(path) ? pictures : checkpoints).push_back(path);
+    }
 
     const Checkpoint all = read_merged(command);
     if (!command.is_quiet) {
         fmt::print(stderr, "together: {}\n", description(all));
         tell_what_is_missing(all.head.slices);
     }
-    for (const std::string& path : command.outputs) {
-        if (image::is_picture_name(path))
-            image::write_picture(path, picture_of(all, {write.exposure, write.view}), write);
-        else
-            write_as_checkpoint(path, all);
-        if (!command.is_quiet) fmt::print(stderr, "wrote {}\n", path);
-    }
+    for (const std::string& path : checkpoints) write_as_checkpoint(path, all);
+    if (!pictures.empty())
+        image::write_pictures(pictures, picture_of(all, {write.exposure, write.view}), write);
+    if (!command.is_quiet)
+        for (const std::string& path : command.outputs) fmt::print(stderr, "wrote {}\n", path);
     return 0;
 }
 

@@ -36,14 +36,26 @@ void go_on_from(const CheckpointHead& old, CheckpointHead& head)
     head.paths = old.paths;
 }
 
+std::string how_far(const CheckpointHead& head, const Slice& slice)
+{
+    if (slice.error <= 0 && !slice.is_timed)
+        return fmt::format("{:.0f} % of samples {}..{}", 100 * fraction_done(head), slice.first,
+                           slice.end);
+    const std::vector<BlockState>& blocks = slice.schedule.blocks;
+    return fmt::format("{} of {} blocks done, up to {} samples a pixel",
+                       std::count_if(blocks.begin(), blocks.end(),
+                                     [](const BlockState& block) { return block.is_done; }),
+                       blocks.size(), done_end(slice));
+}
+
 void tell_beginning(const std::string& file, const CheckpointHead& old, const std::string& backend)
 {
     if (old.backends != std::vector{backend})
         fmt::print(stderr, "notice: {} was begun on {}: the picture will be by both\n", file,
                    joined(old.backends));
     for (const Slice& slice : old.slices)
-        fmt::print(stderr, "going on from {}: {:.0f} % of samples {}..{}, {:.1f} s so far\n", file,
-                   100 * fraction_done(old), slice.first, slice.end, old.seconds);
+        fmt::print(stderr, "going on from {}: {}, {:.1f} s so far\n", file, how_far(old, slice),
+                   old.seconds);
 }
 
 // "128..512" of a plan of `samples`: first and end.

@@ -199,6 +199,46 @@ TEST_F(CheckpointCommand, MergeTellsWhatIsMissingAndRefusesWhatDoesNotFit)
                    "is no checkpoint");
     expect_refusal(run_diptych({"merge", "--quiet", a, "-o", folder_ / "no/folder.exr"}),
                    "check that its folder");
+    const std::string bytes = bytes_of_file(a);
+    expect_refusal(
+        run_diptych({"merge", "--quiet", a, "-o", folder_.path() / "." / "a.checkpoint"}),
+        "is one of the checkpoints to merge");
+    EXPECT_EQ(bytes_of_file(a), bytes);
+}
+
+// An adaptive one has no number of samples to be a part of.
+TEST_F(CheckpointCommand, GoesOnFromBlocksThatAreDone)
+{
+    const std::vector<std::string> words = {"--error", "20", "--checkpoint", file_};
+    ASSERT_EQ(render(words).exit_code, 0);
+    const Outcome again = render(words);
+    EXPECT_EQ(again.exit_code, 0) << again.text();
+    EXPECT_NE(again.err.find("24 of 24 blocks done"), std::string::npos) << again.err;
+}
+
+// Programs, files and checkpoints go by what lies between two times, if by times at all.
+TEST_F(CheckpointCommand, ClocksMayGoBackwards)
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers have to be loaded before everything else";
+#endif
+    const RunOptions backwards{.environment = {{"LD_PRELOAD", BACKWARD_CLOCK}}};
+    const std::string expected = folder_ / "expected.exr", merged = folder_ / "merged.exr";
+    const std::string b = folder_ / "b.checkpoint";
+    ASSERT_EQ(run_program({"date", "+%s"}, backwards).exit_code, 0);
+    EXPECT_LT(std::stoll(run_program({"date", "+%s"}, backwards).out), 1);
+    ASSERT_EQ(render({"--quiet", "-o", expected}).exit_code, 0);
+    const Outcome first = render({"--range", "0..160", "--checkpoint", file_}, backwards);
+    ASSERT_EQ(first.exit_code, 0) << first.text();
+    const Outcome second = render({"--range", "160..320", "--checkpoint", b}, backwards);
+    ASSERT_EQ(second.exit_code, 0) << second.text();
+    const Outcome both = run_diptych({"merge", file_, b, "-o", merged}, backwards);
+    EXPECT_EQ(both.exit_code, 0) << both.text();
+    const Outcome same =
+        run_diptych({"compare", expected, merged, "--metric", "max", "--max", "0"});
+    EXPECT_EQ(same.exit_code, 0) << same.text();
+    const Outcome timed = render({"--time", "1s"}, backwards);
+    EXPECT_EQ(timed.exit_code, 0) << timed.text();
 }
 
 TEST_F(CheckpointCommand, RefusesToGoOnFromAnotherPicture)
