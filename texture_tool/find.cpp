@@ -200,6 +200,25 @@ void note_missing_returns(const Diagnostics& diagnostics, Description& descripti
     }
 }
 
+// Names that nothing is known by. The parser would complain of what is done with their values.
+void check_names(const std::vector<Word>& words, const std::string& source,
+                 std::vector<Problem>& problems)
+{
+    for (size_t k = 0; k + 2 < words.size(); ++k) {
+        const bool is_attribute = words[k].text == "readAttr";
+        if ((!is_attribute && words[k].text != "readSetting") || words[k + 1].text != "(") continue;
+        const bool has_hit = k + 4 < words.size() && words[k + 3].text == ",";
+        const Word& text = words[k + (has_hit ? 4 : 2)];
+        if (text.text != "\"") continue;
+        const size_t first = size_t(text.offset) + 1;
+        const size_t end = source.find_first_of("\"\\\n", first);
+        if (end == std::string::npos || source[end] != '"') continue;
+        const std::string name = source.substr(first, end - first);
+        const std::string problem = is_attribute ? attribute_problem(name) : setting_problem(name);
+        if (!problem.empty()) problems.push_back({text.line, text.column, true, problem});
+    }
+}
+
 // Macros can put together what the file's own words do not show.
 void check_expansions(Description& description)
 {
@@ -245,6 +264,7 @@ Description find(const std::string& name, const std::string& text)
     check_words(words, description.problems);
     for (const Problem& problem : description.problems)
         if (problem.text.find("reads another file") != std::string::npos) return description;
+    check_names(words, source, description.problems);
     blank_pragmas(words, parsed);
     const std::map<std::string, std::string> own_names = rename_own(words, parsed);
     const LibraryText library = library_for(words);

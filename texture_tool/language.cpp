@@ -97,6 +97,25 @@ std::string nearest(const std::string& name, const std::vector<std::string>& kno
     return best;
 }
 
+std::string attribute_problem(const std::string& name)
+{
+    if (name == "AO" || name == "AO0" || name == "AO1" || !attribute_of(name).empty()) return "";
+    const std::string near = nearest(name, attribute_names());
+    std::string known;
+    for (const std::string& one : attribute_names()) known += (known.empty() ? "" : ", ") + one;
+    return "unknown attribute \"" + name + "\"; " +
+           (near.empty() ? "" : "did you mean \"" + near + "\"? ") + "Known: " + known;
+}
+
+std::string setting_problem(const std::string& name)
+{
+    const std::vector<std::string>& known = settings();
+    if (std::find(known.begin(), known.end(), name) != known.end()) return "";
+    const std::string near = nearest(name, known);
+    return "unknown setting \"" + name + "\"; nearest: \"" + (near.empty() ? known[0] : near) +
+           "\"; known: Time, Frame, Width, Height, Samples";
+}
+
 bool is_library_function(const std::string& name)
 {
     static const std::set<std::string> names = words_of(

@@ -18,6 +18,9 @@ std::string attribute_of(const std::string& name);
 // The known name nearest to one misspelt, or "".
 std::string nearest(const std::string& name, const std::vector<std::string>& known);
 std::vector<std::string> attribute_names();
+// What is wrong with the name of an attribute or a setting, in words, or "".
+std::string attribute_problem(const std::string& name);
+std::string setting_problem(const std::string& name);
 
 // Whether OpenCL's built-in function is part of the language, and its name without native_, half_.
 bool is_library_function(const std::string& name);

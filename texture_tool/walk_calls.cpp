@@ -249,13 +249,8 @@ void Walk::reader_call(const CallExpr* node, const std::string& name)
     Site site{SiteKind::Replace};
     site.range = range_of(node);
     if (name == "readSetting") {
-        const auto& known = settings();
-        if (std::find(known.begin(), known.end(), written) == known.end())
-            return complain(
-                argument->getBeginLoc(),
-                "unknown setting \"" + written + "\"; nearest: \"" +
-                    (nearest(written, known).empty() ? known[0] : nearest(written, known)) +
-                    "\"; known: Time, Frame, Width, Height, Samples");
+        const std::string problem = setting_problem(written);
+        if (!problem.empty()) return complain(argument->getBeginLoc(), problem);
         remember(description_.settings, written);
         site.text = "tx_setting_" + written + "(tx_context)";
         description_.sites.push_back(site);
@@ -277,15 +272,7 @@ void Walk::reader_call(const CallExpr* node, const std::string& name)
         return;
     }
     const std::string attribute = attribute_of(written);
-    if (attribute.empty()) {
-        const std::string near = nearest(written, attribute_names());
-        std::string known;
-        for (const std::string& one : attribute_names()) known += (known.empty() ? "" : ", ") + one;
-        return complain(argument->getBeginLoc(),
-                        "unknown attribute \"" + written + "\"; " +
-                            (near.empty() ? "" : "did you mean \"" + near + "\"? ") +
-                            "Known: " + known);
-    }
+    if (attribute.empty()) return complain(argument->getBeginLoc(), attribute_problem(written));
     remember(description_.attributes, attribute);
     site.text = "tx_attribute_" + attribute + "(tx_context)";
     description_.sites.push_back(site);

@@ -3,6 +3,7 @@
 #include "texture_tool/walk.hpp"
 
 #include <cerrno>
+#include <clang/AST/ExprCXX.h>
 #include <cstdlib>
 
 #include "texture_tool/language.hpp"
@@ -193,6 +194,7 @@ void Walk::expression(const Expr* node)
         site.token2 = matching_close(site.token);
         return;
     }
+    if (isa<CXXBoolLiteralExpr>(node)) return;
     if (isa<StringLiteral>(node))
         return complain(node->getBeginLoc(),
                         "text is only for the names in readAttr, readSetting and "

@@ -104,20 +104,38 @@ std::string trimmed(const std::string& text)
                : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-// Comment lines "// NAME (TYPE, ...; default JSON): what it is" tell of arguments.
+// The text of a line that is a comment, or a line of one: behind //, /* or *, before */.
+std::string comment_in(const std::string& line)
+{
+    std::string text = trimmed(line);
+    const size_t signs = text.starts_with("//") || text.starts_with("/*") ? 2
+                         : text.starts_with("*")                          ? 1
+                                                                          : 0;
+    if (signs == 0) return "";
+    if (text.ends_with("*/") && text.size() >= signs + 2) text.resize(text.size() - 2);
+    return trimmed(text.substr(signs));
+}
+
+// Comment lines "// NAME (TYPE, ...; default JSON): what it is" tell of arguments; the last part
+// may be missing.
 void read_comments(const std::string& source, std::vector<TextureArgument>& arguments)
 {
     std::istringstream lines(source);
     for (std::string line; std::getline(lines, line);) {
-        const size_t open = line.find(" ("), close = line.find("):");
-        if (!line.starts_with("// ") || open == std::string::npos || close == std::string::npos ||
-            open > close)
-            continue;
+        const std::string comment = comment_in(line);
+        const size_t open = comment.find(" (");
+        const size_t colon = comment.find("):");
+        const size_t close = colon != std::string::npos ? colon
+                             : comment.ends_with(")")   ? comment.size() - 1
+                                                        : std::string::npos;
+        if (open == std::string::npos || close == std::string::npos || open > close) continue;
         const auto argument =
-            std::ranges::find(arguments, line.substr(3, open - 3), &TextureArgument::name);
-        if (argument == arguments.end() || !argument->about.empty()) continue;
-        argument->about = trimmed(line.substr(close + 2));
-        const std::string inside = line.substr(open + 2, close - open - 2);
+            std::ranges::find(arguments, comment.substr(0, open), &TextureArgument::name);
+        const std::string inside = comment.substr(open + 2, close - open - 2);
+        const bool is_told = argument != arguments.end() &&
+                             (!argument->about.empty() || !argument->default_value.empty());
+        if (argument == arguments.end() || is_told) continue;
+        if (colon != std::string::npos) argument->about = trimmed(comment.substr(colon + 2));
         const size_t at = inside.rfind("; default ");
         if (at != std::string::npos) argument->default_value = trimmed(inside.substr(at + 10));
     }

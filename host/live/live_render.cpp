@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 namespace diptych {
 namespace {
@@ -143,6 +144,8 @@ void LiveRender::apply(const Requests& requests)
         const Edit edit = scene_.look_again(requests.changed);
         follow(edit);
         held_.clear();
+        if (std::exchange(has_told_error_, false) && edit.kind == EditKind::nothing)
+            hooks_.tell("the error is gone; the picture goes on");
         begin_again(edit, requests.since);
     } catch (const std::runtime_error& error) {
         hold(error.what());
@@ -190,6 +193,7 @@ void LiveRender::hold(const std::string& message)
 void LiveRender::tell_held_message()
 {
     hooks_.warn(held_);
+    has_told_error_ = true;
     held_.clear();
 }
 

@@ -85,6 +85,7 @@ private:
     double last_latency_ = 0;
     std::string held_;  // an error that the rest of a save may still settle
     Clock::time_point held_since_;
+    bool has_told_error_ = false;  // and nothing was taken since
 };
 
 }  // namespace diptych

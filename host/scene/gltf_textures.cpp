@@ -161,7 +161,7 @@ private:
             uri.empty() ? library_texture(library) : document_.resolved(uri, where);
         if (file.empty())
             fail(where, fmt::format("the library has no texture {}; see its list in "
-                                    "docs/textures.md",
+                                    "docs/texture-library.md",
                                     printable(library)));
         if (!fs::is_regular_file(file))
             fail(where, fmt::format("{} is not there; check the name", printable(uri)));
@@ -192,12 +192,19 @@ private:
             if (!entry.arguments.is_object()) fail(at + ".arguments", "must be an object");
             entries_.push_back(std::move(entry));
         }
-        if (extension.contains("occlusionRays"))
-            settings.occlusion_rays = int(std::clamp(
-                number_in(extension["occlusionRays"], where + ".occlusionRays"), 1.0, 256.0));
-        if (extension.contains("occlusionDistance"))
+        if (extension.contains("occlusionRays")) {
+            const double rays = number_in(extension["occlusionRays"], where + ".occlusionRays");
+            if (rays < 1 || rays > 256 || rays != std::floor(rays))
+                fail(where + ".occlusionRays", "must be a whole number from 1 to 256");
+            settings.occlusion_rays = int(rays);
+        }
+        if (extension.contains("occlusionDistance")) {
             settings.occlusion_distance =
                 number_in(extension["occlusionDistance"], where + ".occlusionDistance");
+            if (settings.occlusion_distance < 0)
+                fail(where + ".occlusionDistance",
+                     "must not be negative; 0 is a tenth of the scene's radius");
+        }
         if (extension.contains("time"))
             settings.time = number_in(extension["time"], where + ".time");
     }
@@ -307,7 +314,11 @@ TextureInput GltfLoader::texture_input(const nlohmann::json& value, const Textur
                                        const std::string& where, int depth) const
 {
     TextureInput input;
-    if (const auto numbers = constant_numbers(value, where)) {
+    if (value.is_string()) {
+        if (value != "white")
+            fail(where, "must be numbers, an image as {\"texture\": N} or \"white\", or a node");
+        input.images.push_back({});  // none is white
+    } else if (const auto numbers = constant_numbers(value, where)) {
         input.numbers = *numbers;
     } else if (value.is_array()) {
         if (depth > 1) fail(where, "is nested too deeply; give an array of numbers or of vectors");
@@ -353,7 +364,8 @@ void GltfLoader::add_textures()
         };
         for (const auto& [name, value] : entry.arguments.items()) give(name, value, "argument");
         for (const auto& [name, text] : reader.defaults_of(node.function)) {
-            const json value = json::parse(text, nullptr, false);
+            json value = json::parse(text, nullptr, false);
+            if (value.is_discarded() && text == "white") value = text;
             if (!node.arguments.count(name) && !value.is_discarded())
                 give(name, value, "default of");
         }

@@ -226,7 +226,9 @@ private:
             size_t length = value.images.size();
             if (argument.type == "sam2D") {
                 for (const TextureUse& use : value.images)
-                    pages_.add(assembly_.add_image_slot(use, !value.is_linear, 0));
+                    pages_.add(use.image < 0
+                                   ? uint(-1)  // as is what no one sets: white
+                                   : uint(assembly_.add_image_slot(use, !value.is_linear, 0)));
             } else {
                 length = value.numbers.size() / size_t(width_of(argument));
                 for (const uint word : constant_words(argument, value.numbers)) pages_.add(word);

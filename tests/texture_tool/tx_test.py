@@ -94,6 +94,11 @@ class TextureTool(unittest.TestCase):
         self.assertEqual(a.done.stderr + b.done.stderr, "")
         self.assertEqual(compile_errors(a, b), "")
 
+    def test_truths_have_names(self):
+        texture = Texture(write("truth.c", "float3 t() { bool a = true; return (float3)(a && !false ? 1.0f : 0.0f); }\n"))
+        self.assertEqual(texture.done.stderr, "")
+        self.assertEqual(compile_errors(texture), "")
+
     def test_tx_11_requests_are_described(self):
         texture = Texture(os.path.join(TEXTURES, "predecessor.c"))
         found = texture.description()

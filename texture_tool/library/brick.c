@@ -6,7 +6,7 @@
 // joint (float, 0 to 0.5; default 0.13): width of the joints in heights of bricks
 // brick_color (float3, linear Rec.709; default [0.36, 0.105, 0.058]): bricks on average
 // burnt_color (float3, linear Rec.709; default [0.115, 0.040, 0.034]): the most burnt
-// mortar_color (float3, linear Rec.709; default [0.46, 0.43, 0.38])
+// mortar_color (float3, linear Rec.709; default [0.46, 0.43, 0.38]): its sand
 // wear (float, 0 to 1; default 0.5): how ragged the edges are
 
 float4 brick(float2 size, float joint, float3 brick_color, float3 burnt_color,
