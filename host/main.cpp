@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 #include <new>
 
@@ -101,12 +102,21 @@ int run(int count, char** arguments)
     return exit_error;
 }
 
+// What was printed has arrived, or the exit code says so.
+int finished(int code)
+{
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
+    fmt::print(stderr, "diptych: standard output: cannot be written; is the disk full?\n");
+    return exit_error;
+}
+
 }  // namespace
 
 int main(int count, char** arguments)
 {
     try {
-        return run(count, arguments);
+        return finished(run(count, arguments));
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "diptych: out of memory; render a smaller picture or scene\n");
         return exit_error;

@@ -110,6 +110,7 @@ CLI::App* add_merge_command(CLI::App& app, MergeCommand& command)
         ->required();
     add_picture_flags(*merge, command.view, command.write);
     merge->add_flag("--quiet", command.is_quiet, "Print errors only");
+    merge->footer("Exit codes: 0 written, 2 error.");
     return merge;
 }
 

@@ -14,8 +14,10 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <unistd.h>
 
@@ -26,11 +28,23 @@ std::atomic<bool> is_interrupted{false};
 
 extern "C" void on_interrupt(int) { is_interrupted = true; }
 
-void print_pixel(const Film& film, const Pixel& pixel)
+void print_pixel(std::FILE* out, const Film& film, const Pixel& pixel)
 {
     const std::array<float, 3> value = film.radiance(pixel.x, pixel.y);
-    fmt::print("pixel {},{}: {:.9g} {:.9g} {:.9g}\n", pixel.x, pixel.y, value[0], value[1],
+    fmt::print(out, "pixel {},{}: {:.9g} {:.9g} {:.9g}\n", pixel.x, pixel.y, value[0], value[1],
                value[2]);
+}
+
+// Of two outputs with one name the second would replace the first.
+void expect_all_different(const RenderCommand& command)
+{
+    std::vector<std::string> names = command.outputs;
+    names.insert(names.end(), {command.json, command.checkpoint.file, command.capture});
+    std::set<std::filesystem::path> seen;
+    for (const std::string& name : names)
+        if (!name.empty() && name != "-" &&
+            !seen.insert(std::filesystem::absolute(name).lexically_normal()).second)
+            throw std::runtime_error(name + ": is named for two outputs; give each its own file");
 }
 
 // Before anything is allocated.
@@ -170,6 +184,8 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
     render->add_option("--json", command.json,
                        "Write a report: times by stage, rays, memory, effects, SHA-256 of every "
                        "layer. - is standard output");
+    for (const char* name : {"--output", "--json", "--checkpoint", "--pixel", "--capture"})
+        refuse_empty(render->get_option(name));
     render->footer(
         "SIGINT and SIGTERM end the pass under way; the pictures then hold the samples so far. A "
         "second one ends\nthe program at once.\n"
@@ -185,6 +201,7 @@ int run_render_command(const RenderCommand& command)
     run.device = with_device_list(run.device);
     if (run.outputs.empty() && wants_picture(run)) run.outputs.push_back("diptych.png");
     for (const std::string& path : run.outputs) image::check_writable(path);
+    expect_all_different(run);
     if (!run.json.empty() && run.json != "-") image::check_file_writable(run.json);
     if (!run.capture.empty()) {
         if (run.pixel.empty())
@@ -258,7 +275,8 @@ int run_render_command(const RenderCommand& command)
         picture = picture_of(result.film, options.viewer);
     if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
     image::write_pictures(run.outputs, picture, write);
-    if (options.pixel) print_pixel(result.film, *options.pixel);
+    if (options.pixel)  // beside a report that programs read
+        print_pixel(run.json == "-" ? stderr : stdout, result.film, *options.pixel);
     if (!run.capture.empty()) {
         const TextureCapture capture =
             capture_textures(*backend, scene, run.scene, run.device.backend, *options.pixel);

@@ -9,6 +9,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <stdexcept>
 
@@ -65,11 +66,15 @@ LoadOptions load_options_from(const SceneFlags& flags)
     std::tie(load.width, load.height) = parse_size(flags.size);
     if (flags.eye.empty() != flags.target.empty())
         throw std::runtime_error("--eye and --target: one is missing; give both or none");
+    if (!flags.eye.empty() && !load.camera.empty())
+        refuse("--camera", load.camera, "--eye is another view; leave one of them out");
     if (!flags.eye.empty()) {
         load.has_view = true;
         parse_vector("--eye", flags.eye, load.eye);
         parse_vector("--target", flags.target, load.target);
         parse_vector("--up", flags.up, load.up);
+        if (load.up[0] == 0 && load.up[1] == 0 && load.up[2] == 0)
+            refuse("--up", flags.up, "no direction; give one, as 0,1,0");
         if (load.eye[0] == load.target[0] && load.eye[1] == load.target[1] &&
             load.eye[2] == load.target[2])
             refuse("--target", flags.target, "the same point as --eye; move one of them");
@@ -77,6 +82,9 @@ LoadOptions load_options_from(const SceneFlags& flags)
     if (!(flags.fov_degrees > 0 && flags.fov_degrees < 180))
         refuse("--fov", fmt::format("{}", flags.fov_degrees),
                "not a field of view; give degrees between 0 and 180");
+    if (flags.eye.empty() && flags.is_lens_given)
+        throw std::runtime_error("--up and --fov: belong to --eye and --target; give these, or "
+                                 "leave them out");
     load.fov = float(flags.fov_degrees * std::numbers::pi / 180);
     load.environment_rotation = float(flags.environment_rotation_degrees * std::numbers::pi / 180);
     if (!(load.environment_scale >= 0 && std::isfinite(load.environment_scale)))
@@ -100,6 +108,16 @@ void leave_solo(SceneData& scene)
 }
 
 }  // namespace
+
+void refuse_empty(CLI::Option* option)
+{
+    option->check(CLI::Validator(
+        [](const std::string& text) {
+            return text.empty() ? std::string("is empty; give it a value or leave it out")
+                                : std::string();
+        },
+        ""));
+}
 
 std::pair<int, int> parse_size(const std::string& text)
 {
@@ -136,6 +154,7 @@ void add_scene_flags(CLI::App& app, SceneFlags& flags)
 {
     app.add_option("SCENE", flags.scene,
                    "glTF 2.0 file (.gltf or .glb); without it, the demo scene");
+    refuse_empty(app.get_option("SCENE"));
     add_view_flags(app, flags);
 }
 
@@ -145,19 +164,29 @@ void add_view_flags(CLI::App& app, SceneFlags& flags)
     app.add_option("--samples", flags.samples, "Samples a pixel")->capture_default_str();
     app.add_flag("--one-sequence", flags.is_one_sequence,
                  "Take all samples of a pixel from one sequence: less noise, no standard error");
-    app.add_option("--seed", flags.seed, "Another seed is another, independent noise")
-        ->capture_default_str();
+    app.add_option("--seed", flags.seed,
+                   "Another seed is another, independent noise: 0 to 4294967295")
+        ->capture_default_str()
+        ->check(CLI::Range(std::int64_t(0), std::int64_t(4294967295)));
     app.add_option("--bounces", flags.bounces,
                    "Scattering events of a path: 0 shows emission alone, none has no limit")
         ->capture_default_str();
     app.add_option("--filter", flags.filter, "Pixel filter: blackman-harris or box")
         ->capture_default_str();
     app.add_option("--camera", flags.load.camera, "Camera of the scene, by name or number");
+    app.add_option("--scene", flags.load.scene_index,
+                   "Scene of the file, by number, where it holds several; its default one when not "
+                   "given")
+        ->check(CLI::Range(0, 1 << 30));
     app.add_option("--eye", flags.eye, "Look from this point, x,y,z (with --target)");
     app.add_option("--target", flags.target, "Look at this point, x,y,z");
-    app.add_option("--up", flags.up, "Upward direction for --eye, x,y,z")->capture_default_str();
+    const auto note_lens = [&flags](const std::string&) { flags.is_lens_given = true; };
+    app.add_option("--up", flags.up, "Upward direction for --eye, x,y,z")
+        ->capture_default_str()
+        ->each(note_lens);
     app.add_option("--fov", flags.fov_degrees, "Vertical field of view for --eye, degrees")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->each(note_lens);
     app.add_option(
         "--env", flags.load.environment,
         "Environment: a latitude-longitude HDR or EXR file, or none. Without the flag, a "
@@ -179,6 +208,7 @@ void add_view_flags(CLI::App& app, SceneFlags& flags)
                    "Show the colour that this texture node gives, as it is, and nothing else");
     app.add_flag("--allow-outside", flags.load.allow_outside,
                  "Let the scene name files outside its own folder");
+    for (const char* name : {"--camera", "--env", "--solo"}) refuse_empty(app.get_option(name));
 }
 
 void add_device_flags(CLI::App& app, DeviceFlags& flags)
@@ -218,6 +248,8 @@ void add_device_options(CLI::App& app, DeviceFlags& flags)
                    "Also write the code that is generated for procedural textures to this folder");
     app.add_option("--use-generated", flags.options.use_generated,
                    "Run the edited copy of that code in this folder instead");
+    for (const char* name : {"--device", "--generated-dir", "--use-generated"})
+        refuse_empty(app.get_option(name));
 }
 
 SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
@@ -233,6 +265,8 @@ SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
                                  load.solo.empty() && load.aovs.empty()))
         throw std::runtime_error(
             "--texture, --set, --solo, --aov: only for a scene's file; name one");
+    if (flags.scene.empty() && !(load.camera.empty() && load.scene_index < 0))
+        throw std::runtime_error("--camera, --scene: only for a scene's file; name one");
     SceneData scene = flags.scene.empty() ? demo_scene(load) : load_scene(flags.scene, load);
     if (!load.solo.empty()) leave_solo(scene);
     Settings& settings = scene.settings.at(0);
@@ -258,6 +292,14 @@ BackendOptions options_from_flags(const DeviceFlags& flags)
         refuse("--device", options.device,
                "several devices are for diptych render and watch; name one");
     options.memory_bytes = parse_bytes("--memory", flags.memory);
+    std::error_code ignored;
+    if (!options.generated_dir.empty() && !options.use_generated.empty() &&
+        std::filesystem::weakly_canonical(options.generated_dir, ignored) ==
+            std::filesystem::weakly_canonical(options.use_generated, ignored))
+        refuse("--generated-dir", options.generated_dir,
+               "would overwrite the edited copy that --use-generated runs; name another folder");
+    if (options.fast_math && flags.backend != "opencl" && !flags.takes_list)
+        throw std::runtime_error("--fast-math: only for --backend opencl; add that flag");
     if (options.debug_kernels && flags.backend != "twin")
         throw std::runtime_error("--debug-kernels: only for --backend twin; add that flag");
     return options;

@@ -10,7 +10,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace diptych {
 
@@ -20,6 +21,7 @@ struct SceneFlags {
     std::string size = "512x512";
     std::string eye, target, up = "0,1,0";
     double fov_degrees = 45;
+    bool is_lens_given = false;  // --up or --fov
     double environment_rotation_degrees = 0;
     int samples = 64;
     bool is_one_sequence = false;
@@ -35,6 +37,9 @@ struct DeviceFlags {
     bool is_backend_given = false;
     bool takes_list = false;  // of several devices
 };
+
+// A value that is an empty text, as of a shell's unset variable, is an error.
+void refuse_empty(CLI::Option* option);
 
 void add_scene_flags(CLI::App& app, SceneFlags& flags);
 void add_view_flags(CLI::App& app, SceneFlags& flags);  // without the scene's name

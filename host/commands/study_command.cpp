@@ -181,6 +181,7 @@ CLI::App* add_study_command(CLI::App& app, StudyCommand& command)
                          "Also write the pictures, under names that begin so");
     add_device_options(*textures, command.device);
     textures->footer("Exit codes: 0 measured, 1 pictures of two arms differ, 2 error.");
+    study->footer("Exit codes: 0 measured, 1 pictures of two arms differ, 2 error.");
     return study;
 }
 

@@ -117,7 +117,7 @@ CLI::App* add_watch_command(CLI::App& app, WatchCommand& command)
     CLI::App* watch = app.add_subcommand(
         "watch", "Render a scene, and go on while its files and textures are edited");
     add_scene_flags(*watch, command.render.scene);
-    watch->get_option("SCENE")->required();
+    watch->get_option("SCENE")->required()->description("glTF 2.0 file (.gltf or .glb)");
     add_output_flags(*watch, command.render);
     add_device_flags(*watch, command.render.device);
     add_error_flags(*watch, command.render.error);

@@ -85,12 +85,34 @@ Case read_case(const Json& item, size_t index, const CompareOptions& common)
     return result;
 }
 
+Json read_list(const std::string& manifest)
+{
+    std::error_code ignored;
+    if (fs::is_directory(manifest, ignored)) fail(manifest, "is a folder; name a JSON file");
+    std::ifstream file(manifest);
+    if (!file) fail(manifest, "cannot be opened; check the path");
+    Json list;
+    try {
+        list = Json::parse(file);
+    } catch (const Json::parse_error& error) {
+        std::string reason = error.what();
+        std::replace(reason.begin(), reason.end(), '\n', ' ');
+        fail(manifest, "is not JSON (" + reason + "); see diptych compare --help for its form");
+    }
+    if (!list.is_array())
+        fail(manifest,
+             "is not a JSON list of comparisons; see diptych compare --help for its form");
+    if (list.empty()) fail(manifest, "holds no comparison; add some");
+    return list;
+}
+
 std::vector<Case> read_cases(const CompareOptions& options)
 {
-    std::ifstream file(options.manifest);
-    if (!file) fail(options.manifest, "cannot be opened; check the path");
-    const Json list = Json::parse(file, nullptr, false);
-    if (!list.is_array()) fail(options.manifest, "is not a JSON list of comparisons");
+    if (!options.reference.empty() || !options.metrics.empty() || !options.limits.empty() ||
+        !options.layer.empty() || !options.heat_map.empty())
+        fail("--manifest " + options.manifest,
+             "says what to compare and how: leave out A, B, --metric, --max, --layer and -o");
+    const Json list = read_list(options.manifest);
     std::vector<Case> cases;
     for (size_t k = 0; k < list.size(); ++k) cases.push_back(read_case(list[k], k, options));
     return cases;

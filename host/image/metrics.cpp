@@ -33,7 +33,7 @@ void check_finite(const Colors& colors, const std::vector<float>& values, const 
         if (std::isfinite(values[k])) continue;
         const size_t pixel = k / 3;
         throw std::runtime_error(
-            fmt::format("{}: pixel {},{} is {}; a picture with such values cannot be compared",
+            fmt::format("{}: pixel {},{} is {}, which cannot be compared; render the picture anew",
                         where, pixel % colors.width, pixel / colors.width,
                         std::isnan(values[k]) ? "not a number" : "infinite"));
     }

@@ -15,9 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<unsigned char>;
 
+// what: with what to do after a semicolon, if that is not to replace the file.
 [[noreturn]] void fail(const std::string& where, const std::string& what)
 {
-    throw std::runtime_error(where + ": " + what);
+    const bool is_advised = what.find(';') != std::string::npos;
+    throw std::runtime_error(where + ": " + what + (is_advised ? "" : "; replace the file"));
 }
 
 // Bytes with bounds: reading past the end is an error of the file.
@@ -224,7 +226,7 @@ Bytes read_bytes(const std::string& path, uint64_t most)
 GuardedFile guard_picture(const std::string& path, const ReadLimits& limits)
 {
     std::error_code error;
-    if (!fs::exists(path, error)) fail(path, "no such file");
+    if (!fs::exists(path, error)) fail(path, "no such file; check the path");
     if (!fs::is_regular_file(path, error)) fail(path, "is not a file; name a picture");
     const char* reader = known_reader(read_bytes(path, 16), path);
     const std::string name = reader;

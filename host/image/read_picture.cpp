@@ -21,9 +21,11 @@ using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
+// what: with what to do after a semicolon, if that is not to replace the file.
 [[noreturn]] void fail(const std::string& path, const std::string& what)
 {
-    throw std::runtime_error(path + ": " + what);
+    const bool is_advised = what.find(';') != std::string::npos;
+    throw std::runtime_error(path + ": " + what + (is_advised ? "" : "; replace the file"));
 }
 
 // Libraries report over several lines and repeat the path; ours is one line that starts with it.

@@ -58,7 +58,8 @@ std::vector<int> GltfLoader::scene_roots()
         chosen = 0;
     }
     if (count > 1) {
-        scene_.notice(fmt::format("scenes: {} in the file, number {} is shown", count, chosen));
+        scene_.notice(fmt::format(
+            "scenes: {} in the file, number {} is shown; --scene chooses another", count, chosen));
     }
     std::vector<char> has_parent(model_.nodes.size(), 0);
     for (const auto& node : model_.nodes) {

@@ -31,8 +31,10 @@ void apply_options(SceneBuilder& scene, const LoadOptions& options)
     if (!options.environment.empty()) {
         const std::filesystem::path file = options.environment;
         if (!std::filesystem::is_regular_file(file)) {
-            throw SceneError(printable(options.environment) +
-                             ": no such file; name a latitude-longitude image for the environment");
+            throw SceneError(
+                printable(options.environment) +
+                (std::filesystem::exists(file) ? ": is not a file" : ": no such file") +
+                "; name a latitude-longitude image for the environment");
         }
         scene.set_environment(
             read_picture(file, printable(options.environment), options.max_image_pixels),
@@ -50,9 +52,8 @@ namespace {
 template<typename Read>
 void read_document(const std::filesystem::path& file, bool allow_outside, const Read& read)
 {
-    const std::string name = printable(file.filename().string());
     const auto fail = [&](const std::string& what) {
-        throw SceneError((name.empty() ? printable(file.string()) : name) + ": " + what);
+        throw SceneError(printable(file.string()) + ": " + what);
     };
     try {
         GltfDocument document(file, allow_outside);
@@ -103,8 +104,7 @@ SceneData load_scene(const std::filesystem::path& file, const LoadOptions& optio
         }
         return data;
     } catch (const SceneError& error) {
-        const std::string name = printable(file.filename().string());
-        throw SceneError((name.empty() ? printable(file.string()) : name) + ": " + error.what());
+        throw SceneError(printable(file.string()) + ": " + error.what());
     }
 }
 

@@ -5,7 +5,9 @@
 
 namespace {
 
-const std::vector<std::string> commands = {"render", "compare", "explain", "devices", "selftest"};
+const std::vector<std::string> commands = {"render",   "compare", "explain", "devices",
+                                           "selftest", "merge",   "farm",    "watch",
+                                           "texture",  "debug",   "study"};
 
 TEST(CommandLine, HelpIsThereForEveryCommandAndNamesExitCodes)
 {
@@ -46,12 +48,61 @@ void expect_refusal(const std::vector<std::string>& arguments, const std::string
     EXPECT_EQ(outcome.out, "");
 }
 
+// What would be ignored, or replace something, is refused.
+TEST(CommandLine, FlagsWithoutEffectAreRefused)
+{
+    const auto refuse = [](std::vector<std::string> words, const std::string& names) {
+        words.insert(words.begin(), {"render", "--size", "8x8", "--samples", "1"});
+        expect_refusal(words, names);
+    };
+    const std::vector<std::string> view = {"--eye", "0,1,3", "--target", "0,1,0"};
+    const auto seen = [&](std::vector<std::string> more) {
+        more.insert(more.end(), view.begin(), view.end());
+        return more;
+    };
+    refuse({"--camera", "nosuch"}, "--camera");
+    refuse({"--scene", "1"}, "--scene");
+    refuse({"--fov", "5"}, "--eye");
+    refuse({"--up", "1,0,0"}, "--eye");
+    refuse(seen({"--camera", "nosuch"}), "--camera nosuch");
+    refuse(seen({"--up", "0,0,0"}), "--up 0,0,0");
+    refuse({"--fast-math"}, "--backend opencl");
+    refuse({"--seed", "-1"}, "4294967295");
+    refuse({"-o", "a.png", "-o", "./a.png"}, "two outputs");
+    refuse({"-o", "a.png", "--json", "a.png"}, "two outputs");
+    for (const char* flag : {"--json", "--env", "--camera", "--device", "--checkpoint", "-o"})
+        refuse({flag, ""}, "is empty");
+    expect_refusal({"render", ""}, "SCENE");
+    expect_refusal({"compare", "a.exr", "b.exr", "--manifest", "m.json"}, "leave out A, B");
+    expect_refusal({"compare", "--manifest", "m.json", "--metric", "rmse", "--max", "0"}, "--max");
+    expect_refusal({"compare", "--manifest", "/tmp"}, "is a folder");
+}
+
+TEST(CommandLine, WhatCannotBePrintedIsAnError)
+{
+    const Outcome full = run_program({"sh", "-c", diptych_program() + " --help > /dev/full"});
+    const Outcome devices = run_program({"sh", "-c", diptych_program() + " devices > /dev/full"});
+    EXPECT_EQ(devices.exit_code, 2) << devices.text();
+    EXPECT_NE(devices.err.find("standard output"), std::string::npos) << devices.text();
+    EXPECT_EQ(full.exit_code, 2) << full.text();
+}
+
+TEST(CommandLine, AReportOnStandardOutputIsAlone)
+{
+    const Outcome one = run_diptych(
+        {"render", "--size", "8x8", "--samples", "1", "--pixel", "3,3", "--quiet", "--json", "-"});
+    EXPECT_EQ(one.exit_code, 0) << one.text();
+    EXPECT_EQ(one.out.find('{'), 0u) << one.out;
+    EXPECT_NE(one.err.find("pixel 3,3: "), std::string::npos) << one.err;
+}
+
 TEST(CommandLine, MistakesAreToldInOneLine)
 {
     expect_refusal({}, "--help");
     expect_refusal({"paint"}, "paint");
     for (const std::string& command : commands)
-        expect_refusal({command, "--nonsense"}, "--nonsense");
+        expect_refusal({command, "--nonsense"}, "see diptych " + command + " --help");
+    expect_refusal({"render", "--nonsense"}, "--nonsense");
     expect_refusal({"render", "--threads", "many"}, "--threads");
     expect_refusal({"render", "--threads", "-1"}, "--threads");
     expect_refusal({"render", "--samples"}, "--samples");

@@ -243,7 +243,7 @@ const Hostile hostile[] = {
     {"argument is text", [](json& e) { e["nodes"][1]["arguments"]["scale"] = "2"; },
      "argument scale: must be numbers"},
     {"argument is null", [](json& e) { e["nodes"][1]["arguments"]["scale"] = nullptr; },
-     "argument scale: must be numbers"},
+     "argument scale: must be a finite number"},
     {"beyond float", [](json& e) { e["nodes"][1]["arguments"]["scale"] = 1e300; },
      "beyond the range of float"},
     {"half a whole number", [](json& e) { e["nodes"][1]["arguments"]["count"] = 0.5; },

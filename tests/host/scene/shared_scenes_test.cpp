@@ -1,4 +1,5 @@
 // Every glTF file among the real scenes, the broken ones too: loads, or is refused with one line.
+#include "host/render/render.hpp"
 #include "host/scene/load.hpp"
 
 #include <algorithm>
@@ -109,9 +110,25 @@ void expect_sound(const SceneData& d)
     EXPECT_TRUE(std::isfinite(s.scene_radius));
 }
 
-TEST(SharedScenes, Every_file_loads_or_is_refused_with_one_line)
+// On the CPU, by few samples: none is dropped for being no finite number.
+void expect_renders(Backend& backend, SceneData& scene)
+{
+    RenderOptions options;
+    options.samples = 2;
+    backend.upload(scene);
+    const RenderResult result = render(backend, scene, options);
+    EXPECT_TRUE(result.is_complete);
+    EXPECT_EQ(result.film.faults().count, 0);
+    for (int y = 0; y < scene.settings[0].height; ++y)
+        for (int x = 0; x < scene.settings[0].width; ++x)
+            for (const float value : result.film.radiance(x, y))
+                ASSERT_TRUE(std::isfinite(value) && value >= 0) << x << "," << y << ": " << value;
+}
+
+TEST(SharedScenes, Every_file_loads_and_renders_or_is_refused_with_one_line)
 {
     SKIP_WITHOUT_SCENES();
+    const std::unique_ptr<Backend> backend = make_backend("cpu", {});
     std::set<std::string> refused;
     size_t files = 0;
     for (const auto& entry : fs::recursive_directory_iterator(scenes)) {
@@ -120,14 +137,15 @@ TEST(SharedScenes, Every_file_loads_or_is_refused_with_one_line)
             continue;
         }
         const std::string name = fs::relative(entry.path(), scenes).string();
-        const Outcome outcome = load(name);
+        Outcome outcome = load(name, {.width = 24, .height = 16});
         SCOPED_TRACE(name);
         ++files;
         if (outcome.message.empty()) {
             expect_sound(outcome.scene);
+            expect_renders(*backend, outcome.scene);
         } else {
             EXPECT_EQ(outcome.message.find('\n'), std::string::npos) << outcome.message;
-            EXPECT_TRUE(outcome.message.starts_with(entry.path().filename().string() + ": "))
+            EXPECT_TRUE(outcome.message.starts_with(entry.path().string() + ": "))
                 << outcome.message;
             EXPECT_NE(outcome.message.find("; "), std::string::npos) << outcome.message;
             if (!name.starts_with("hostile-")) {
