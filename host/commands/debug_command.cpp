@@ -318,6 +318,10 @@ DebugStop find_stop_in(const SceneData& scene, const std::string& node, int mate
             calls > 1 ? at->first_word : -1};
 }
 
+// Names of functions that `step` passes over: all but those of textures, which are in a namespace
+// of the file within user_language.
+static constexpr const char* not_of_users = "^(user_language::)?[A-Za-z0-9_]+([<(].*)?$";
+
 std::vector<std::string> debugger_command(const std::string& debugger, const DebugStop& stop,
                                           const std::vector<std::string>& program,
                                           const std::vector<std::string>& commands)
@@ -334,6 +338,9 @@ std::vector<std::string> debugger_command(const std::string& debugger, const Deb
         add("set breakpoint pending on");
         add("set print thread-events off");
         add("set print frame-arguments all");
+        add(fmt::format("skip -rfu {}", not_of_users));
+    } else {
+        add(fmt::format("settings set target.process.thread.step-avoid-regexp {}", not_of_users));
     }
     if (stop.region < 0) {
         stop_here();

@@ -111,6 +111,23 @@ TEST_F(DebugTexture, GdbStopsAtALineOfTheFileWithTheValuesOfThePicture)
     EXPECT_GT(value[0], 0.0f);
 }
 
+// Over what attributes, vectors and mathematical functions are made of.
+TEST_F(DebugTexture, StepStaysAmongTheUsersLines)
+{
+    for (const std::string debugger : {"gdb", "lldb"}) {
+        if (const std::string why = why_no_debugger(debugger); !why.empty()) {
+            std::printf("%s left out: %s\n", debugger.c_str(), why.c_str());
+            continue;
+        }
+        const Outcome outcome =
+            debug({"--pixel", "12,8", "--texture", "paint", "--debugger", debugger},
+                  {"step", "step", "step", "step"});
+        EXPECT_EQ(outcome.out.find("common/"), std::string::npos) << outcome.text();
+        EXPECT_NE(outcome.out.find("paint.c:" + at_line("sin(p.x")), std::string::npos)
+            << outcome.text();
+    }
+}
+
 // Two nodes call one function: the arguments tell which it is.
 TEST_F(DebugTexture, StopsForTheNodeThatWasNamed)
 {
