@@ -60,6 +60,16 @@ void check_film_fits(const SceneData& scene, const RenderOptions& options)
                         settings.width, settings.height, needed >> 20, there >> 20));
 }
 
+// On a terminal one line that counts, else one at the beginning.
+void tell_audit_progress(int done, int of, bool is_end)
+{
+    if (isatty(STDERR_FILENO) != 0)
+        fmt::print(stderr, "\raudit: {} of {} blocks rendered again{}", done, of,
+                   is_end ? "\n" : "");
+    else if (done == 0 && !is_end)
+        fmt::print(stderr, "audit: {} blocks are rendered again\n", of);
+}
+
 void print_audit(const Audit& audit, double bar)
 {
     if (audit.blocks < audit.chosen)
@@ -292,7 +302,8 @@ int run_render_command(const RenderCommand& command)
     if (!run.is_quiet && error) fmt::print(stderr, "{}\n", ending_text(result, options, *error));
     std::optional<Audit> audited;
     if (run.is_audited) {
-        audited = audit(*backend, scene, options, result, aim);
+        audited = audit(*backend, scene, options, result, aim,
+                        run.is_quiet ? nullptr : tell_audit_progress);
         print_audit(*audited, aim);
     }
     if (!run.json.empty()) {

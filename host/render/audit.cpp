@@ -95,7 +95,8 @@ void add_interval(Audit& audit, const std::vector<Tally>& tallies)
 }  // namespace
 
 Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
-            const RenderResult& result, double bar)
+            const RenderResult& result, double bar,
+            const std::function<void(int done, int of, bool is_end)>& tell)
 {
     const auto start = std::chrono::steady_clock::now();
     const BlockGrid grid = grid_of(scene.settings.at(0), options);
@@ -112,6 +113,7 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
     const std::vector<size_t> chosen = chosen_blocks(grid.corners.size());
     audit.chosen = int(chosen.size());
     for (const size_t b : chosen) {
+        if (tell) tell(int(tallies.size()), audit.chosen, false);
         const int quanta = result.schedule.blocks[b].quanta;
         if (quanta == 0 || (options.stop && options.stop->load())) continue;
         const Quantum& last = plan[size_t(quanta) - 1];
@@ -133,6 +135,7 @@ Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
     scene.settings[0].seed = seed;
     backend.upload(scene);
     audit.blocks = int(tallies.size());
+    if (tell) tell(audit.blocks, audit.chosen, true);
     if (!tallies.empty()) add_interval(audit, tallies);
     if (all.pixels > 0) audit.share_within = all.within / all.pixels;
     if (calm > 0) audit.share_false = double(wrong) / calm;

@@ -3,6 +3,8 @@
 
 #include "host/render/render.hpp"
 
+#include <functional>
+
 namespace diptych {
 
 struct Audit {
@@ -20,7 +22,9 @@ struct Audit {
 // Renders about one block in sixteen anew, eight or so at least, by another seed and four times the
 // samples, and compares. The noise that the new samples have themselves is taken off the RMS, not
 // off the shares. Uploads the scene again, and leaves it uploaded with its own seed.
+// tell: before each block and at the end, how many are done and are to be.
 Audit audit(Backend& backend, SceneData& scene, const RenderOptions& options,
-            const RenderResult& result, double bar);
+            const RenderResult& result, double bar,
+            const std::function<void(int done, int of, bool is_end)>& tell = {});
 
 }  // namespace diptych
