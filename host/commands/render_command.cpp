@@ -212,6 +212,12 @@ int run_render_command(const RenderCommand& command)
     if (run.outputs.empty() && wants_picture(run)) run.outputs.push_back("diptych.png");
     for (const std::string& path : run.outputs) image::check_writable(path);
     expect_all_different(run);
+    const bool has_layers = std::ranges::any_of(run.outputs, [](const std::string& path) {
+        return std::filesystem::path(path).extension() == ".exr";
+    });
+    if (!run.scene.load.aovs.empty() && !has_layers && run.json.empty() &&
+        run.checkpoint.file.empty())
+        throw std::runtime_error("--aov: pictures with layers are .exr files; name one with -o");
     if (!run.json.empty() && run.json != "-") image::check_file_writable(run.json);
     if (!run.capture.empty()) {
         if (run.pixel.empty())

@@ -99,6 +99,7 @@ TextureFile find_texture_file(const std::string& words)
     if (fs::is_regular_file(name)) return {name, name, entry};
     if (const fs::path shipped = library_texture(name); !shipped.empty())
         return {shipped, shipped.filename().string(), entry};
+    if (fs::exists(name)) fail(printable(words), "is not a file; name the .c file of a texture");
     fail(printable(words), "no such file, nor a texture of the library; check the name");
 }
 

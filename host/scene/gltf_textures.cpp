@@ -143,6 +143,8 @@ public:
             const auto at = std::ranges::find(entries_, name.get<std::string>(), &Entry::name);
             if (at != entries_.end()) return int(at - entries_.begin());
         }
+        if (entries_.empty())
+            fail(where, printable(name.dump()) + " names no texture node; the scene has none");
         std::vector<std::string> names;
         for (const Entry& entry : entries_) names.push_back(entry.name);
         if (names.size() > 8) names.resize(8);

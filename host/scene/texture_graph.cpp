@@ -66,6 +66,9 @@ int texture_node_named(const std::string& name, const std::vector<TextureNode>& 
 {
     const auto at = std::ranges::find(nodes, name, &TextureNode::name);
     if (at != nodes.end()) return int(at - nodes.begin());
+    if (nodes.empty())
+        throw SceneError(fmt::format("{} {}: the scene has no texture node; add one with --texture",
+                                     flag, printable(name)));
     std::vector<std::string> names;
     for (const TextureNode& node : nodes) names.push_back(printable(node.name));
     if (names.size() > 8) names.resize(8);
