@@ -26,11 +26,13 @@ std::string why_no_debugger(const std::string& debugger)
 {
     const Outcome version = run_program({debugger, "--version"});
     if (version.exit_code != 0) return debugger + " is not installed";
-    if (debugger == "gdb") {
-        const Outcome trial = run_program({"gdb", "-batch", "-nx", "-ex", "run", "--args", "true"});
-        if (trial.text().find("exited normally") == std::string::npos)
-            return "gdb may not trace programs here: " + trial.text();
-    }
+    const bool is_lldb = debugger == "lldb";
+    const Outcome trial =
+        is_lldb ? run_program({"lldb", "--batch", "-o", "run", "--", "/bin/true"})
+                : run_program({"gdb", "-batch", "-nx", "-ex", "run", "--args", "true"});
+    if (trial.text().find(is_lldb ? "exited with status = 0" : "exited normally") ==
+        std::string::npos)
+        return debugger + " may not trace programs here: " + trial.text();
     return "";
 }
 
