@@ -298,8 +298,6 @@ BackendOptions options_from_flags(const DeviceFlags& flags)
             std::filesystem::weakly_canonical(options.use_generated, ignored))
         refuse("--generated-dir", options.generated_dir,
                "would overwrite the edited copy that --use-generated runs; name another folder");
-    if (options.fast_math && flags.backend != "opencl" && !flags.takes_list)
-        throw std::runtime_error("--fast-math: only for --backend opencl; add that flag");
     if (options.debug_kernels && flags.backend != "twin")
         throw std::runtime_error("--debug-kernels: only for --backend twin; add that flag");
     return options;
@@ -310,6 +308,8 @@ DeviceFlags with_device_list(const DeviceFlags& flags)
     DeviceFlags listed = flags;
     const std::string& devices = flags.options.device;
     if (!is_device_list(devices)) {
+        if (flags.options.fast_math && devices.empty() && flags.backend != "opencl")
+            throw std::runtime_error("--fast-math: only for --backend opencl; add that flag");
         if (devices.empty() || flags.backend == "opencl") return listed;
         if (flags.is_backend_given)
             refuse("--device", devices,

@@ -73,6 +73,9 @@ TEST(CommandLine, FlagsWithoutEffectAreRefused)
     for (const char* flag : {"--json", "--env", "--camera", "--device", "--checkpoint", "-o"})
         refuse({flag, ""}, "is empty");
     expect_refusal({"render", ""}, "SCENE");
+    const Outcome cost =  // a command without --backend knows where it means something
+        run_diptych({"texture", "cost", "checker", "--backends", "cpu", "--fast-math"});
+    EXPECT_EQ(cost.exit_code, 0) << cost.text();
     expect_refusal({"compare", "a.exr", "b.exr", "--manifest", "m.json"}, "leave out A, B");
     expect_refusal({"compare", "--manifest", "m.json", "--metric", "rmse", "--max", "0"}, "--max");
     expect_refusal({"compare", "--manifest", "/tmp"}, "is a folder");
