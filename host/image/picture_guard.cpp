@@ -15,13 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<unsigned char>;
 
-// what: with what to do after a semicolon, if that is not to replace the file.
-[[noreturn]] void fail(const std::string& where, const std::string& what)
-{
-    const bool is_advised = what.find(';') != std::string::npos;
-    throw std::runtime_error(where + ": " + what + (is_advised ? "" : "; replace the file"));
-}
-
 // Bytes with bounds: reading past the end is an error of the file.
 struct Reader {
     const Bytes& bytes;
@@ -30,7 +23,8 @@ struct Reader {
 
     uint64_t number(size_t at, int size) const
     {
-        if (at > bytes.size() || bytes.size() - at < size_t(size)) fail(where, "is cut short");
+        if (at > bytes.size() || bytes.size() - at < size_t(size))
+            refuse_picture(where, "is cut short");
         uint64_t value = 0;
         for (int k = 0; k < size; ++k)
             value = value << 8 | bytes[at + (big_endian ? k : size - 1 - k)];
@@ -42,10 +36,10 @@ void check_pixels(const std::string& where, uint64_t width, uint64_t height,
                   const ReadLimits& limits)
 {
     if (width == 0 || height == 0)
-        fail(where, fmt::format("its header gives {} x {} pixels", width, height));
+        refuse_picture(where, fmt::format("its header gives {} x {} pixels", width, height));
     if (height > limits.pixels / width)
-        fail(where, fmt::format("{} x {} pixels are more than the {} allowed", width, height,
-                                limits.pixels));
+        refuse_picture(where, fmt::format("{} x {} pixels are more than the {} allowed", width,
+                                          height, limits.pixels));
 }
 
 // The cyclic redundancy check of PNG (ISO 3309), bit by bit for each of the 256 bytes.
@@ -66,7 +60,7 @@ uint32_t crc_of(const unsigned char* data, size_t size)
 
 void check_png_header(const Reader& file, size_t data, size_t size, const ReadLimits& limits)
 {
-    if (size != 13) fail(file.where, "is corrupt (its PNG header has the wrong size)");
+    if (size != 13) refuse_picture(file.where, "is corrupt (its PNG header has the wrong size)");
     check_pixels(file.where, file.number(data, 4), file.number(data + 4, 4), limits);
     const int depth = file.bytes[data + 8], kind = file.bytes[data + 9];
     const bool known =
@@ -74,7 +68,8 @@ void check_png_header(const Reader& file, size_t data, size_t size, const ReadLi
         : kind == 3 ? depth == 1 || depth == 2 || depth == 4 || depth == 8
                     : (kind == 2 || kind == 4 || kind == 6) && (depth == 8 || depth == 16);
     if (!known)
-        fail(file.where, fmt::format("is corrupt (PNG colour type {} with {} bits)", kind, depth));
+        refuse_picture(file.where,
+                       fmt::format("is corrupt (PNG colour type {} with {} bits)", kind, depth));
 }
 
 // Header, palette, transparency and pixels, each with a right checksum; nothing else.
@@ -88,13 +83,14 @@ Bytes guard_png(const Bytes& bytes, const std::string& where, const ReadLimits& 
         (void)file.number(at + 8 + size, 4);  // the whole chunk is there
         const std::string type(bytes.begin() + long(at) + 4, bytes.begin() + long(at) + 8);
         if ((at == 8) != (type == "IHDR"))
-            fail(where, "is corrupt (its PNG header is out of place)");
+            refuse_picture(where, "is corrupt (its PNG header is out of place)");
         const bool critical = type == "IHDR" || type == "PLTE" || type == "IDAT" || type == "IEND";
         if (!critical && (type[0] & 32) == 0)
-            fail(where, "is corrupt (PNG chunk of an unknown kind)");
+            refuse_picture(where, "is corrupt (PNG chunk of an unknown kind)");
         if (critical || type == "tRNS") {
             if (crc_of(&bytes[at + 4], size + 4) != file.number(at + 8 + size, 4))
-                fail(where, fmt::format("is corrupt (wrong checksum of its PNG chunk {})", type));
+                refuse_picture(
+                    where, fmt::format("is corrupt (wrong checksum of its PNG chunk {})", type));
             kept.insert(kept.end(), bytes.begin() + long(at), bytes.begin() + long(at + 12 + size));
         }
         if (type == "IHDR")
@@ -105,7 +101,7 @@ Bytes guard_png(const Bytes& bytes, const std::string& where, const ReadLimits& 
         at += 12 + size;
     }
     if (!has_pixels || (needs_palette && !has_palette))
-        fail(where, "is corrupt (no pixels or no palette)");
+        refuse_picture(where, "is corrupt (no pixels or no palette)");
     return kept;
 }
 
@@ -129,14 +125,14 @@ Bytes guard_jpeg(const Bytes& bytes, const std::string& where, const ReadLimits&
         const size_t size = file.number(at, 2);
         const size_t end = at + size;
         if (size < 2 || end > bytes.size())
-            fail(where, "is cut short or corrupt (JPEG marker beyond the end)");
+            refuse_picture(where, "is cut short or corrupt (JPEG marker beyond the end)");
         const bool frame =
             kind >= 0xc0 && kind <= 0xcf && kind != 0xc4 && kind != 0xc8 && kind != 0xcc;
         if (frame) check_pixels(where, file.number(at + 5, 2), file.number(at + 3, 2), limits);
         const bool metadata = kind == 0xfe || (kind >= 0xe1 && kind <= 0xef && kind != 0xee);
         size_t keep_until = metadata ? code : end;
         if (kind == 0xda) {
-            if (++scans > MOST_SCANS) fail(where, "is a JPEG of too many scans");
+            if (++scans > MOST_SCANS) refuse_picture(where, "is a JPEG of too many scans");
             while (keep_until + 1 < bytes.size() &&
                    (bytes[keep_until] != 0xff || bytes[keep_until + 1] == 0 ||
                     (bytes[keep_until + 1] & 0xf8) == 0xd0))
@@ -149,7 +145,7 @@ Bytes guard_jpeg(const Bytes& bytes, const std::string& where, const ReadLimits&
         }
         at = std::max(end, keep_until);
     }
-    if (scans == 0) fail(where, "is corrupt (a JPEG without pixels)");
+    if (scans == 0) refuse_picture(where, "is corrupt (a JPEG without pixels)");
     kept.insert(kept.end(), {0xff, 0xd9});
     return kept;
 }
@@ -203,11 +199,11 @@ Bytes guard_bytes(const std::string& reader, Bytes bytes, const std::string& whe
 
 const char* known_reader(const Bytes& start, const std::string& where)
 {
-    if (start.empty()) fail(where, "is an empty file");
+    if (start.empty()) refuse_picture(where, "is an empty file");
     const char* reader = reader_of(start);
     if (!reader)
-        fail(where,
-             "is no EXR, HDR, PNG, JPEG or TIFF picture, or is corrupt from its first bytes");
+        refuse_picture(
+            where, "is no EXR, HDR, PNG, JPEG or TIFF picture, or is corrupt from its first bytes");
     return reader;
 }
 
@@ -217,17 +213,23 @@ Bytes read_bytes(const std::string& path, uint64_t most)
     std::error_code error;
     Bytes bytes(std::min<uint64_t>(fs::file_size(path, error), most));
     if (error || !file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
-        fail(path, "cannot be read; check that it is a file and yours to read");
+        refuse_picture(path, "cannot be read; check that it is a file and yours to read");
     return bytes;
 }
 
 }  // namespace
 
+void refuse_picture(const std::string& where, const std::string& what)
+{
+    const bool is_advised = what.find(';') != std::string::npos;
+    throw std::runtime_error(where + ": " + what + (is_advised ? "" : "; replace the file"));
+}
+
 GuardedFile guard_picture(const std::string& path, const ReadLimits& limits)
 {
     std::error_code error;
-    if (!fs::exists(path, error)) fail(path, "no such file; check the path");
-    if (!fs::is_regular_file(path, error)) fail(path, "is not a file; name a picture");
+    if (!fs::exists(path, error)) refuse_picture(path, "no such file; check the path");
+    if (!fs::is_regular_file(path, error)) refuse_picture(path, "is not a file; name a picture");
     const char* reader = known_reader(read_bytes(path, 16), path);
     const std::string name = reader;
     if (name == "openexr" || name == "hdr") return {reader, {}};

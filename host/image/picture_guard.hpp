@@ -19,6 +19,10 @@ struct GuardedFile {
     std::vector<unsigned char> bytes;
 };
 
+// Throws std::runtime_error. what: with what to do after a semicolon, if that is not to replace the
+// file.
+[[noreturn]] void refuse_picture(const std::string& where, const std::string& what);
+
 // Throws std::runtime_error (path: what; what to do) for anything that is not one of the five
 // formats, is cut short where that shows, or exceeds the limits.
 GuardedFile guard_picture(const std::string& path, const ReadLimits& limits = {});

@@ -21,13 +21,6 @@ using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-// what: with what to do after a semicolon, if that is not to replace the file.
-[[noreturn]] void fail(const std::string& path, const std::string& what)
-{
-    const bool is_advised = what.find(';') != std::string::npos;
-    throw std::runtime_error(path + ": " + what + (is_advised ? "" : "; replace the file"));
-}
-
 // Libraries report over several lines and repeat the path; ours is one line that starts with it.
 std::string reason(const std::string& path, std::string text)
 {
@@ -56,17 +49,18 @@ void check_size(const std::string& path, const ImageSpec& spec, const ReadLimits
 {
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 ||
         spec.nchannels < 1)
-        fail(path,
-             fmt::format("its header gives {} x {} pixels of {} channels; the file is corrupt",
-                         spec.width, spec.height, spec.nchannels));
+        refuse_picture(
+            path, fmt::format("its header gives {} x {} pixels of {} channels; the file is corrupt",
+                              spec.width, spec.height, spec.nchannels));
     const uint64_t stored = uint64_t(spec.width) * uint64_t(spec.height);
     const uint64_t pixels = std::max(stored, shown_pixels(spec));
     if (pixels > limits.pixels || pixels > limits.values / uint64_t(spec.nchannels))
-        fail(path,
-             fmt::format(
-                 "{} x {} pixels of {} channels are more than the {} pixels or {} values allowed",
-                 std::max(spec.width, spec.full_width), std::max(spec.height, spec.full_height),
-                 spec.nchannels, limits.pixels, limits.values));
+        refuse_picture(
+            path,
+            fmt::format(
+                "{} x {} pixels of {} channels are more than the {} pixels or {} values allowed",
+                std::max(spec.width, spec.full_width), std::max(spec.height, spec.full_height),
+                spec.nchannels, limits.pixels, limits.values));
     constexpr uint64_t LARGEST_RATIO = 4000, STORED_FREELY = 64u << 20, SHOWN_FREELY = 1u << 30;
     std::error_code error;
     const uint64_t file_bytes = fs::file_size(path, error);
@@ -75,12 +69,13 @@ void check_size(const std::string& path, const ImageSpec& spec, const ReadLimits
         return bytes > freely && !error && bytes / LARGEST_RATIO > file_bytes;
     };
     if (is_bomb(stored, STORED_FREELY) || is_bomb(shown_pixels(spec), SHOWN_FREELY))
-        fail(path,
-             fmt::format("its header announces {} x {} pixels, but the file has only {} bytes",
-                         std::max(spec.width, spec.full_width),
-                         std::max(spec.height, spec.full_height), file_bytes));
-    if (spec.deep) fail(path, "holds deep pixels, which are not supported; flatten it first");
-    if (spec.depth > 1) fail(path, "holds a volume, not a picture");
+        refuse_picture(
+            path, fmt::format("its header announces {} x {} pixels, but the file has only {} bytes",
+                              std::max(spec.width, spec.full_width),
+                              std::max(spec.height, spec.full_height), file_bytes));
+    if (spec.deep)
+        refuse_picture(path, "holds deep pixels, which are not supported; flatten it first");
+    if (spec.depth > 1) refuse_picture(path, "holds a volume, not a picture");
 }
 
 Window window_of(const ImageSpec& spec)
@@ -179,7 +174,9 @@ public:
                                     spec_.nchannels, type, bytes_.data())
                 : input_.read_scanlines(part_, 0, y0, y1, spec_.z, 0, spec_.nchannels, type,
                                         bytes_.data());
-        if (!good) fail(path_, "corrupt or cut short (" + reason(path_, input_.geterror()) + ")");
+        if (!good)
+            refuse_picture(path_,
+                           "corrupt or cut short (" + reason(path_, input_.geterror()) + ")");
     }
 
     float number(size_t pixel, int c) const
@@ -282,7 +279,8 @@ OpenPicture open(const std::string& path, const ReadLimits& limits)
     OpenPicture open{guard_picture(path, limits), nullptr, nullptr};
     open.input = ImageInput::create(open.file.reader);
     if (!open.input)
-        fail(path, fmt::format("this OpenImageIO has no reader for {} files", open.file.reader));
+        refuse_picture(
+            path, fmt::format("this OpenImageIO has no reader for {} files", open.file.reader));
     if (!open.file.bytes.empty()) {
         open.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(open.file.bytes.data(),
                                                                       open.file.bytes.size());
@@ -291,7 +289,7 @@ OpenPicture open(const std::string& path, const ReadLimits& limits)
     ImageSpec spec, wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);  // display values stay as they are stored
     if (!open.input->open(path, spec, wishes))
-        fail(path, "cannot be read (" + reason(path, open.input->geterror()) + ")");
+        refuse_picture(path, "cannot be read (" + reason(path, open.input->geterror()) + ")");
     return open;
 }
 
@@ -307,7 +305,8 @@ Picture read_all(const std::string& path, const ReadLimits& limits)
     const bool parts = std::strcmp(input->format_name(), "openexr") == 0;
     for (int part = 0; part == 0 || (parts && input->seek_subimage(part, 0)); ++part) {
         const ImageSpec spec = input->spec(part);
-        if (spec.undefined()) fail(path, "corrupt (" + reason(path, input->geterror()) + ")");
+        if (spec.undefined())
+            refuse_picture(path, "corrupt (" + reason(path, input->geterror()) + ")");
         if (part > 0 && (spec.full_width != first.full_width ||
                          spec.full_height != first.full_height || spec.deep))
             continue;
@@ -330,9 +329,9 @@ Picture read_picture(const std::string& path, const ReadLimits& limits)
     try {
         return read_all(path, limits);
     } catch (const std::bad_alloc&) {
-        fail(path, "too large for the memory of this machine");
+        refuse_picture(path, "too large for the memory of this machine");
     } catch (const std::length_error&) {
-        fail(path, "too large for the memory of this machine");
+        refuse_picture(path, "too large for the memory of this machine");
     }
 }
 

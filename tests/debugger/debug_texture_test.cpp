@@ -116,11 +116,14 @@ TEST_F(DebugTexture, GdbStopsAtALineOfTheFileWithTheValuesOfThePicture)
 // Over what attributes, vectors and mathematical functions are made of.
 TEST_F(DebugTexture, StepStaysAmongTheUsersLines)
 {
+    std::string left_out;
+    int stepped = 0;
     for (const std::string debugger : {"gdb", "lldb"}) {
         if (const std::string why = why_no_debugger(debugger); !why.empty()) {
-            std::printf("%s left out: %s\n", debugger.c_str(), why.c_str());
+            left_out += why + "; ";
             continue;
         }
+        ++stepped;
         const Outcome outcome =
             debug({"--pixel", "12,8", "--texture", "paint", "--debugger", debugger},
                   {"step", "step", "step", "step"});
@@ -128,6 +131,7 @@ TEST_F(DebugTexture, StepStaysAmongTheUsersLines)
         EXPECT_NE(outcome.out.find("paint.c:" + at_line("sin(p.x")), std::string::npos)
             << outcome.text();
     }
+    if (stepped == 0) GTEST_SKIP() << left_out;
 }
 
 // Two nodes call one function: the arguments tell which it is.

@@ -105,7 +105,8 @@ TEST(CommandLine, MistakesAreToldInOneLine)
     expect_refusal({"paint"}, "paint");
     for (const std::string& command : commands)
         expect_refusal({command, "--nonsense"}, "see diptych " + command + " --help");
-    expect_refusal({"render", "--nonsense"}, "--nonsense");
+    for (const char* command : {"render", "compare", "explain", "devices", "selftest"})
+        expect_refusal({command, "--nonsense"}, "--nonsense");  // others ask for their scene first
     expect_refusal({"render", "--threads", "many"}, "--threads");
     expect_refusal({"render", "--threads", "-1"}, "--threads");
     expect_refusal({"render", "--samples"}, "--samples");
