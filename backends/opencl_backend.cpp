@@ -235,7 +235,7 @@ void OpenclBackend::run_bounce()
             if (k != STAGE_compact && is_due(stage_when(Stage(k))) && is_active(Stage(k), effects_))
                 stages_.run(Stage(k), live());
     };
-    run_all([](When when) { return when == When::each_bounce || when == When::first_bounce; });
+    run_all([](When when) { return is_of_bounce(when) || when == When::first_bounce; });
     run_all([](When when) { return when == When::at_end; });
     stages_.run(STAGE_generate_paths, live());
 }
@@ -344,7 +344,7 @@ void OpenclBackend::trace(const Dispatch& dispatch,
             const Stage stage = Stage(k);
             const When when = stage_when(stage);
             const bool is_first = when == When::once || when == When::first_bounce;
-            const bool is_due = when == When::each_bounce || (is_first && bounce == 0);
+            const bool is_due = is_of_bounce(when) || (is_first && bounce == 0);
             if (!is_due || !is_active(stage, effects_)) continue;
             if (stage == STAGE_compact) {
                 live = stages_.select(memory_.path_planes[row_depth], {paths, nullptr}, nullptr);

@@ -81,6 +81,11 @@
     X(int, first_object, sample)          \
     X(int, first_material, sample)
 
+// Values of surface_kind.
+#define SURFACE_NONE 0
+#define SURFACE_LIT 1
+#define SURFACE_UNLIT 2
+
 // What a dispatch leaves for the host: sums over the samples of a work item, one entry a pixel of
 // the item.
 #define RESULT_BUFFERS(X)   \

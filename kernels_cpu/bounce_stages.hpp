@@ -10,6 +10,7 @@ template<typename Run>
 void for_stages_of_bounce(unsigned effects, int bounce, const Run& run)
 {
 #define RUN_each_bounce(name) run(STAGE_##name);
+#define RUN_each_surface(name) RUN_each_bounce(name)
 #define RUN_first_bounce(name) \
     if (bounce == 0) run(STAGE_##name);
 #define RUN_once(name)
@@ -25,6 +26,7 @@ void for_stages_of_bounce(unsigned effects, int bounce, const Run& run)
 #undef RUN_once
 #undef RUN_each_layer
 #undef RUN_first_bounce
+#undef RUN_each_surface
 #undef RUN_each_bounce
 }
 

@@ -1,6 +1,5 @@
 #include "kernels_cpu/chunk.hpp"
 
-#include "common/as_cpp/path_rows.hpp"
 #include "kernels_cpu/bounce_stages.hpp"
 #include "kernels_cpu/texture_rays.hpp"
 
@@ -16,13 +15,27 @@ constexpr int padding = 16;
 constexpr int capacity = chunk_paths + padding;
 constexpr int packet = 16;  // paths that Embree takes at once, at most
 
-// Compaction costs about as much as a stage on a tenth of the paths.
+// Compaction costs about as much as a stage on a tenth of the paths; after it, dead ones would run
+// through all stages of the next bounces, those that have only missed through three of this one.
 bool is_worth_compacting(int live, int count) { return live <= count - count / 8; }
+bool is_worth_parting(int met, int count) { return met <= count - count / 4; }
 
-template<class Value>
-void gather_plane(Value* plane, const int* live, int count)
+void add_range(std::vector<PathRange>& ranges, int first, int count)
 {
-    for (int k = 0; k < count; ++k) plane[k] = plane[live[k]];
+    if (!ranges.empty() && ranges.back().first + ranges.back().count == first)
+        ranges.back().count += count;
+    else if (count > 0)
+        ranges.push_back({first, count});
+}
+
+// Closes ranks: `front` of `count` paths, in ascending order, then the others that `from` lists.
+template<class Value>
+void gather_plane(Value* plane, const int* from, int front, int count)
+{
+    Value back[chunk_paths];
+    for (int k = front; k < count; ++k) back[k] = plane[from[k]];
+    for (int k = 0; k < front; ++k) plane[k] = plane[from[k]];
+    std::copy(back + front, back + count, plane + front);
 }
 
 template<class Value>
@@ -38,7 +51,7 @@ void scatter_radiance(Value* out, const Value* in, const int* slots, const int* 
 
 Chunk::Chunk(const KernelSet& kernels, const EmbreeScene* embree, const SceneView& scene)
     : kernels_(kernels), embree_(embree), scene_(scene), planes_(path_row_count),
-      retired_planes_(path_row_count), slots_(chunk_paths), live_(chunk_paths)
+      retired_planes_(path_row_count), slots_(chunk_paths), order_(chunk_paths)
 {
     size_t bytes = 64;
     const auto row_bytes = [&](const PathRow& row) {
@@ -120,7 +133,10 @@ void Chunk::trace_paths(int count)
     for (int live = count; live > 0; ++bounce_) {
         slot_steps += std::uint64_t((live + packet - 1) / packet * packet);
         busy_steps += std::uint64_t(alive_);
-        for_stages_of_bounce(scene_.effects, bounce_, [&](Stage stage) { run_stage(stage, live); });
+        for_stages_of_bounce(scene_.effects, bounce_, [&](Stage stage) {
+            run_stage(stage, live);
+            if (stage == STAGE_intersect) find_surfaces(live);
+        });
         live = compact(live);
     }
 }
@@ -137,7 +153,11 @@ void Chunk::run_stage(Stage stage, const PathView& view, int count)
 {
     count_rays(stage, view, count);
     const auto start = std::chrono::steady_clock::now();
-    if (const StageLoop loop = kernels_.loop(stage, scene_.effects))
+    const StageLoop loop = kernels_.loop(stage, scene_.effects);
+    if (const StageLoop missed = kernels_.missed(stage)) {
+        for (const PathRange& range : surfaces_) loop(scene_, view, range.first, range.count);
+        for (const PathRange& range : misses_) missed(scene_, view, range.first, range.count);
+    } else if (loop)
         loop(scene_, view, 0, count);
     else if (stage == STAGE_intersect)
         rays += embree_->intersect(scene_, view, count, bounce_ == 0);
@@ -173,6 +193,58 @@ void Chunk::count_rays(Stage stage, const PathView& view, int count)
     }
 }
 
+// Where many rays have met nothing, the stages of surfaces leave them out: those of the camera by
+// groups, since neighbours in the picture miss together and have to stay in their slots; later ones
+// go behind the others.
+void Chunk::find_surfaces(int count)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const int* hit = static_cast<const int*>(planes_[row_hit_triangle]);
+    const auto has_missed = [](int triangle) { return triangle < 0; };
+    const int met = count - int(std::count_if(hit, hit + count, has_missed));
+    surfaces_.clear();
+    misses_.clear();
+    if (!is_worth_parting(met, count)) {
+        add_range(surfaces_, 0, count);
+    } else if (bounce_ == 0) {
+        for (int first = 0; first < count; first += packet) {
+            const int size = std::min(packet, count - first);
+            const bool is_empty = std::all_of(hit + first, hit + first + size, has_missed);
+            add_range(is_empty ? misses_ : surfaces_, first, size);
+        }
+    } else {
+        int front = 0, back = met;
+        for (int i = 0; i < count; ++i) order_[has_missed(hit[i]) ? back++ : front++] = i;
+        gather_carried(met, count);
+        gather(path_rows[row_hit_triangle], met, count);
+        gather(path_rows[row_hit_instance], met, count);
+        add_range(surfaces_, 0, met);
+        add_range(misses_, met, count - met);
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    stage_seconds[STAGE_compact] += elapsed.count();
+}
+
+// By order_.
+void Chunk::gather(const PathRow& row, int front, int count)
+{
+    void* planes = planes_[size_t(&row - path_rows)];
+    for (int c = 0; c < row.components; ++c) {
+        if (row.is_real && kernels_.real_bytes == 8)
+            gather_plane(static_cast<double*>(planes) + c * capacity, order_.data(), front, count);
+        else
+            gather_plane(static_cast<std::uint32_t*>(planes) + c * capacity, order_.data(), front,
+                         count);
+    }
+}
+
+void Chunk::gather_carried(int front, int count)
+{
+    for (const PathRow& row : path_rows)
+        if (row.life == Life::carried) gather(row, front, count);
+    gather_plane(slots_.data(), order_.data(), front, count);
+}
+
 // Ended paths hand in their radiance; when enough have ended, the others close ranks in order.
 int Chunk::compact(int count)
 {
@@ -180,7 +252,7 @@ int Chunk::compact(int count)
     const int* depth = static_cast<const int*>(planes_[row_depth]);
     int live = 0;
     for (int i = 0; i < count; ++i) {
-        live_[live] = i;
+        order_[live] = i;
         live += depth[i] >= 0 ? 1 : 0;
     }
     alive_ = live;
@@ -190,18 +262,7 @@ int Chunk::compact(int count)
         remaining = 0;
     } else if (is_worth_compacting(live, count)) {
         retire(count);
-        for (int r = 0; r < path_row_count; ++r) {
-            if (path_rows[r].life != Life::carried) continue;
-            for (int c = 0; c < path_rows[r].components; ++c) {
-                if (path_rows[r].is_real && kernels_.real_bytes == 8)
-                    gather_plane(static_cast<double*>(planes_[r]) + c * capacity, live_.data(),
-                                 live);
-                else
-                    gather_plane(static_cast<std::uint32_t*>(planes_[r]) + c * capacity,
-                                 live_.data(), live);
-            }
-        }
-        gather_plane(slots_.data(), live_.data(), live);
+        gather_carried(live, live);
         remaining = live;
     }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

@@ -2,6 +2,7 @@
 // second-level cache.
 #pragma once
 
+#include "common/as_cpp/path_rows.hpp"
 #include "kernels_cpu/embree_scene.hpp"
 #include "kernels_cpu/kernels.hpp"
 #include "kernels_cpu/record_view.hpp"
@@ -14,6 +15,12 @@
 namespace diptych {
 
 inline constexpr int chunk_paths = 1024;
+
+// Paths first .. first + count - 1.
+struct PathRange {
+    int first;
+    int count;
+};
 
 // Path state for one thread, and what its work has cost so far.
 class Chunk {
@@ -40,7 +47,10 @@ private:
     void run_stage(Stage stage, const PathView& view, int count);
     void count_rays(Stage stage, const PathView& view, int count);
     void trace_paths(int count);
+    void find_surfaces(int count);
     int compact(int count);
+    void gather(const PathRow& row, int front, int count);
+    void gather_carried(int front, int count);
     void retire(int count);
 
     const KernelSet& kernels_;
@@ -51,7 +61,9 @@ private:
     std::vector<void*> retired_planes_;  // planes_, but radiance lies in the order of the slots
     std::vector<void*> texture_planes_;
     std::vector<int> slots_;
-    std::vector<int> live_;
+    std::vector<int> order_;           // in which paths close ranks
+    std::vector<PathRange> surfaces_;  // of this bounce; outside these no ray has met anything
+    std::vector<PathRange> misses_;
     PathView view_;
     RecordViews records_;
     int bounce_ = 0;

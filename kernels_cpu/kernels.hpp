@@ -57,6 +57,9 @@ struct KernelSet {
     // for some effects are chosen by `effects`; which buffers such a loop may read beyond those of
     // `effects` says covered_effects.
     StageLoop (*loop)(Stage stage, unsigned effects);
+    // Of a stage each_surface: what takes its place where rays have met nothing; nullptr for
+    // others.
+    StageLoop (*missed)(Stage stage);
     unsigned (*covered_effects)(unsigned effects);
 };
 

@@ -103,6 +103,22 @@ unsigned covered_effects(unsigned effects) { return effects; }
 #define ENTRY(name, body, when, needs) ENTRY_##body(name)
 STAGES(ENTRY)
 
+#define MISSED_each_surface(name)                                                              \
+    void name##_missed_loop(const SceneView& scene_view, const PathView& path_view, int first, \
+                            int count)                                                         \
+    {                                                                                          \
+        const Scene scene = scene_from(scene_view);                                            \
+        const Paths paths = paths_from(path_view);                                             \
+        for (int i = first; i < first + count; ++i) name##_missed(&scene, &paths, i);          \
+    }
+#define MISSED_once(name)
+#define MISSED_each_bounce(name)
+#define MISSED_first_bounce(name)
+#define MISSED_each_layer(name)
+#define MISSED_at_end(name)
+#define MISSED(name, body, when, needs) MISSED_##when(name)
+STAGES(MISSED)
+
 #if !VECTORISED
 #define ENTRY_walk(name)                                                                           \
     void name##_loop(const SceneView& scene_view, const PathView& path_view, int first, int count) \
@@ -143,9 +159,18 @@ ENTRY_walk(intersect) ENTRY_walk(occlusion) ENTRY_walk(trace_texture_rays)
     return nullptr;
 }
 
+StageLoop missed_of(Stage stage)
+{
+#undef MISSED_each_surface
+#define MISSED_each_surface(name) \
+    if (stage == STAGE_##name) return name##_missed_loop;
+    STAGES(MISSED)
+    return nullptr;
+}
+
 }  // namespace
 
 extern const KernelSet set;
-const KernelSet set{KERNEL_NAME, int(sizeof(PLANE(float))), loop_of, covered_effects};
+const KernelSet set{KERNEL_NAME, int(sizeof(PLANE(float))), loop_of, missed_of, covered_effects};
 
 }  // namespace diptych::KERNEL_SET

@@ -5,11 +5,6 @@
 
 #include "common/surface.h"
 
-// Values of surface_kind.
-#define SURFACE_NONE 0
-#define SURFACE_LIT 1
-#define SURFACE_UNLIT 2
-
 // Reflectance at normal incidence of the dielectric interface (KHR_materials_specular,
 // KHR_materials_ior).
 SHARED float3 surface_dielectric_f0(const Scene* scene, int material, float4 specular_color)
@@ -85,6 +80,12 @@ SHARED float3 surface_emission(const Scene* scene, const Paths* paths, int i, in
         surface_slot(scene, paths, i, weights, scene->materials[material].emission_slot,
                      SLOT_EMISSION, uses(scene, EFFECT_EMISSION_TEXTURE));
     return factor * xyz(texel);
+}
+
+SHARED void evaluate_surface_missed(const Scene* scene, const Paths* paths, int i)
+{
+    (void)scene;
+    set_surface_kind(paths, i, SURFACE_NONE);
 }
 
 SHARED void evaluate_surface(const Scene* scene, const Paths* paths, int i)

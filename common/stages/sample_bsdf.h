@@ -22,6 +22,13 @@ SHARED float roulette_survival(float3 throughput, int depth)
     return depth < ROULETTE_FIRST_DEPTH ? 1.0f : most;
 }
 
+// Nothing is left to scatter at: the path ends.
+SHARED void sample_bsdf_missed(const Scene* scene, const Paths* paths, int i)
+{
+    (void)scene;
+    set_depth(paths, i, -1);
+}
+
 SHARED void sample_bsdf(const Scene* scene, const Paths* paths, int i)
 {
     const int depth = get_depth(paths, i);

@@ -7,6 +7,12 @@
 #include "common/stages/scale_light.h"
 #include "common/stages/surface_frame.h"
 
+SHARED void sample_light_missed(const Scene* scene, const Paths* paths, int i)
+{
+    set_light_contribution(paths, i, make_float3(0.0f, 0.0f, 0.0f));
+    if (uses(scene, EFFECT_PROCEDURAL_EMISSION)) set_record_triangle(paths, 0, i, -1);
+}
+
 SHARED void sample_light(const Scene* scene, const Paths* paths, int i)
 {
     const int depth = get_depth(paths, i);

@@ -133,6 +133,7 @@ void add_stages(std::string& text, const SceneData& scene)
     const std::map<std::string, const char*> when_words = {{"once", "once"},
                                                            {"each_bounce", "each bounce"},
                                                            {"first_bounce", "first bounce"},
+                                                           {"each_surface", "each surface"},
                                                            {"each_layer", "each layer"},
                                                            {"at_end", "at the end"}};
 #define EXPLAIN_STAGE(name, body, when, needs) add(#name, when_words.at(#when), needs);

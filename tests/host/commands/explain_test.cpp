@@ -47,7 +47,7 @@ TEST(Explain, NamesMaterialsLightsStagesAndOmissions)
     EXPECT_TRUE(has(text, "material lamp: 2 emissive triangles")) << text;
     EXPECT_TRUE(has(text, "mesh 3: lines are skipped")) << text;
     EXPECT_TRUE(has(text, "occlusion textures")) << text;
-    EXPECT_TRUE(has(text, "sample_light      each bounce, for EMISSION, PUNCTUAL_LIGHTS")) << text;
+    EXPECT_TRUE(has(text, "sample_light      each surface, for EMISSION, PUNCTUAL_LIGHTS")) << text;
     EXPECT_TRUE(has(text, "triangles ")) << text;
 }
 
