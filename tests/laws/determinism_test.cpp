@@ -189,15 +189,14 @@ TEST_P(Determinism, AnEffectNotCalledForChangesNoPixel)
         EXPECT_TRUE(is_same(expected, image::beauty_of(more.film.picture()).pixels)) << name;
     };
     // A users' texture is code that must be there: nothing to switch on.
-    const unsigned possible = ~(plain.effects | EFFECT_ORTHOGRAPHIC | USER_TEXTURE_EFFECTS);
+    const unsigned possible = ~(plain.effects | USER_TEXTURE_EFFECTS);
     unsigned all = 0;
-#define ADD_EFFECT(name, bit, words)                          \
-    all |= EFFECT_##name & possible;                          \
-    if ((EFFECT_##name & possible) && GetParam() != "opencl") \
-        expect_same_with(EFFECT_##name, #name);
+#define ADD_EFFECT(name, bit, words) \
+    all |= EFFECT_##name & possible; \
+    if (EFFECT_##name & possible) expect_same_with(EFFECT_##name, #name);
     EFFECTS_LIST(ADD_EFFECT)
 #undef ADD_EFFECT
-    expect_same_with(all, "all");  // alone on OpenCL, which compiles programs for each
+    expect_same_with(all, "all");
 }
 
 ON_EACH_BACKEND(Determinism);
