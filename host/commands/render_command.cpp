@@ -313,9 +313,10 @@ int run_render_command(const RenderCommand& command)
         print_audit(*audited, aim);
     }
     if (!run.json.empty()) {
-        const std::string report = json_report(run, scene, *backend, result, picture, place,
-                                               textures, error, audited, checkpoint.writer()) +
-                                   "\n";
+        const std::string report =
+            json_report(run, scene, options, *backend, result, picture, place, textures, error,
+                        audited, checkpoint.writer()) +
+            "\n";
         if (run.json == "-")
             std::cout << report << std::flush;
         else

@@ -53,6 +53,18 @@ const char* faulty_buffer(const StageState& state, size_t p)
     return nullptr;
 }
 
+// The scene's, and what the render leaves out.
+std::vector<std::string> notices_of(const SceneData& scene, const RenderOptions& options)
+{
+    std::vector<std::string> notices = scene.notices;
+    if (options.samples < standard_error_samples && !is_adaptive(options))
+        notices.push_back(
+            fmt::format("fewer than {} samples: no standard-error layer", standard_error_samples));
+    else if (scene.settings[0].sequence_quanta > 0)
+        notices.push_back("--one-sequence: no standard-error layer");
+    return notices;
+}
+
 }  // namespace
 
 void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan,
@@ -60,15 +72,11 @@ void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan
 {
     const int samples = options.samples;
     const Settings& settings = scene.settings[0];
-    for (const std::string& line : scene.notices) fmt::print(stderr, "notice: {}\n", line);
+    for (const std::string& line : notices_of(scene, options))
+        fmt::print(stderr, "notice: {}\n", line);
     const std::string count = !is_adaptive(options)
                                   ? std::to_string(samples)
                                   : fmt::format("{} to {}", std::min(64, samples), samples);
-    if (samples < standard_error_samples && !is_adaptive(options))
-        fmt::print(stderr, "notice: fewer than {} samples: no standard-error layer\n",
-                   standard_error_samples);
-    else if (settings.sequence_quanta > 0)
-        fmt::print(stderr, "notice: --one-sequence: no standard-error layer\n");
     fmt::print(stderr, "{}\n", backend.description());
     fmt::print(stderr, "{} x {}, {} samples, {} triangles, {} lights, effects: {}\n",
                settings.width, settings.height, count, scene.triangles.size(), settings.light_count,
@@ -153,9 +161,9 @@ std::string scene_hash(const SceneData& scene)
 }
 
 std::string json_report(const RenderCommand& command, const SceneData& scene,
-                        const Backend& backend, const RenderResult& result,
-                        const image::Picture& picture, const std::optional<FaultPlace>& fault,
-                        const TextureFaultReport& textures,
+                        const RenderOptions& options, const Backend& backend,
+                        const RenderResult& result, const image::Picture& picture,
+                        const std::optional<FaultPlace>& fault, const TextureFaultReport& textures,
                         const std::optional<ErrorSummary>& error,
                         const std::optional<Audit>& audited, const CheckpointWriter* checkpoint)
 {
@@ -192,7 +200,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
         {"dispatch_paths", result.plan.items * QUANTUM << (2 * BLOCK_SHIFT)},
         {"effects", effect_names(scene.effects)},
         {"degenerate_triangles", scene.degenerate_triangles},
-        {"notices", scene.notices},
+        {"notices", notices_of(scene, options)},
         {"slots_busy", slots_busy(statistics)},
         {"scheduling_seconds", result.scheduling_seconds},
         {"dropped_samples", result.film.faults().count},

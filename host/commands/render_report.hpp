@@ -37,9 +37,9 @@ struct FaultPlace {
 std::optional<FaultPlace> find_fault(Backend& backend, const Faults& faults, int samples);
 
 std::string json_report(const RenderCommand& command, const SceneData& scene,
-                        const Backend& backend, const RenderResult& result,
-                        const image::Picture& picture, const std::optional<FaultPlace>& fault,
-                        const TextureFaultReport& textures,
+                        const RenderOptions& options, const Backend& backend,
+                        const RenderResult& result, const image::Picture& picture,
+                        const std::optional<FaultPlace>& fault, const TextureFaultReport& textures,
                         const std::optional<ErrorSummary>& error,
                         const std::optional<Audit>& audited, const CheckpointWriter* checkpoint);
 

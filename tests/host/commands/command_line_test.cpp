@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 namespace {
 
 const std::vector<std::string> commands = {"render",   "compare", "explain", "devices",
@@ -97,6 +99,27 @@ TEST(CommandLine, AReportOnStandardOutputIsAlone)
     EXPECT_EQ(one.exit_code, 0) << one.text();
     EXPECT_EQ(one.out.find('{'), 0u) << one.out;
     EXPECT_NE(one.err.find("pixel 3,3: "), std::string::npos) << one.err;
+}
+
+TEST(CommandLine, AReportHoldsTheNoticesOfTheTerminal)
+{
+    const auto missing = [](const char* samples, std::vector<std::string> more) {
+        more.insert(more.begin(), {"render", "--size", "8x8", "--samples", samples, "--json", "-",
+                                   "-o", std::filesystem::temp_directory_path() / "notices.exr"});
+        const Outcome outcome = run_diptych(more);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        const std::string tail = "no standard-error layer";
+        const std::string notices = outcome.out.substr(outcome.out.find("\"notices\""));
+        EXPECT_EQ(outcome.err.find(tail) == std::string::npos,
+                  notices.find(tail) == std::string::npos)
+            << outcome.text();
+        const size_t end = notices.find(tail);
+        const size_t begin = notices.rfind('"', end);
+        return end == std::string::npos ? "" : notices.substr(begin + 1, end - begin - 1);
+    };
+    EXPECT_EQ(missing("16", {}), "fewer than 128 samples: ");
+    EXPECT_EQ(missing("128", {"--one-sequence"}), "--one-sequence: ");
+    EXPECT_EQ(missing("128", {}), "");
 }
 
 TEST(CommandLine, MistakesAreToldInOneLine)
