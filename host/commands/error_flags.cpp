@@ -43,6 +43,13 @@ void add_error_flags(CLI::App& app, ErrorFlags& flags)
                "limit")
             ->expected(0, 1)
             ->type_name("[JND]");
+    flags.share_option =
+        app.add_option("--share", flags.share,
+                       "With --error: end when so many per cent of the blocks are below the "
+                       "target; the hardest few may take as long as all others together")
+            ->check(CLI::Range(1.0, 100.0))
+            ->type_name("PERCENT")
+            ->default_str("100");
     app.add_option(
         "--time", flags.time,
         "Render for so long, as 30s or 2m, giving samples to where the error is largest");
@@ -76,6 +83,12 @@ void set_targets(const ErrorFlags& flags, int samples, RenderOptions& options)
     const bool has_time = !flags.time.empty();
     if (has_error) options.error = parse_error(flags.error);
     if (has_time) options.time_limit = parse_seconds("--time", flags.time);
+    if (is_given(flags.share_option) && !has_error)
+        throw std::runtime_error("--share: of the blocks below which error? add --error");
+    if (is_given(flags.share_option) && flags.is_unbiased)
+        throw std::runtime_error("--share: --unbiased decides for each block before any is done; "
+                                 "leave one out");
+    options.share = flags.share / 100;
     if (flags.is_unbiased && !has_error)
         throw std::runtime_error("--unbiased: there is nothing to decide; add --error");
     if (flags.is_unbiased && has_time)
@@ -104,7 +117,8 @@ std::string ending_text(const RenderResult& result, const RenderOptions& options
         [&](const BlockState& block) { return block.quanta >= options.samples / QUANTUM; });
     if (options.is_unbiased && result.ending == Ending::SamplesDone && !is_cut)
         text = "ended: what the pilot asked for is rendered";
-    if (result.target > 0 && result.ending != Ending::TargetReached)
+    if (result.target > 0 &&
+        (result.ending != Ending::TargetReached || result.unfinished_blocks > 0))
         text += fmt::format("; {} of {} blocks are above {:.3g} JND", result.unfinished_blocks,
                             result.blocks, result.target);
     const double bar = options.error > 0 ? options.error : 1;

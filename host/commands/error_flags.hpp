@@ -13,11 +13,13 @@ class Option;
 namespace diptych {
 
 struct ErrorFlags {
-    std::string error;  // empty: without a value
-    std::string time;   // empty: not given
+    std::string error;   // empty: without a value
+    std::string time;    // empty: not given
+    double share = 100;  // per cent
     bool is_unbiased = false;
     const CLI::Option* error_option = nullptr;  // to tell whether it was given
     const CLI::Option* samples_option = nullptr;
+    const CLI::Option* share_option = nullptr;
 };
 
 void add_error_flags(CLI::App& app, ErrorFlags& flags);

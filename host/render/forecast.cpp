@@ -38,10 +38,10 @@ double Forecast::exponent() const
     return rise_ > 0 ? std::clamp(fall_ / rise_, slowest_fall, 0.5) : 0.5;
 }
 
-double Forecast::fraction(const Schedule& schedule, int target, int plan_length) const
+double Forecast::fraction(const Schedule& schedule, int target, int plan_length, double share) const
 {
     const double power = 1 / exponent();
-    double needed = 0, there = 0;
+    std::vector<double> needed;
     for (size_t b = 0; b < schedule.blocks.size(); ++b) {
         const BlockState& block = schedule.blocks[b];
         double quanta = block.target;
@@ -51,10 +51,19 @@ double Forecast::fraction(const Schedule& schedule, int target, int plan_length)
             const double ratio = std::max(double(looks_[b].error) / target, 1.0);
             quanta = std::max(quanta, looks_[b].quanta * std::pow(ratio, power));
         }
-        needed += std::min(quanta, double(plan_length));
-        there += block.quanta;
+        needed.push_back(std::min(quanta, double(plan_length)));
     }
-    return needed > 0 ? there / needed : 1;
+    if (needed.empty()) return 1;
+    // Blocks beyond the share go on until the last one within it is done.
+    const auto last = needed.begin() + std::ptrdiff_t(std::ceil(share * double(needed.size()))) - 1;
+    std::nth_element(needed.begin(), last, needed.end());
+    const double most = *last;
+    double all = 0, there = 0;
+    for (size_t b = 0; b < needed.size(); ++b) {
+        all += std::min(needed[b], most);
+        there += std::min(double(schedule.blocks[b].quanta), most);
+    }
+    return all > 0 ? there / all : 1;
 }
 
 }  // namespace diptych

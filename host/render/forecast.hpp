@@ -11,8 +11,8 @@ public:
     void observe(const Schedule& schedule);
 
     // Of the quanta that the blocks will have had in the end, at most plan_length each: the share
-    // that is there. target: as in Targets.
-    double fraction(const Schedule& schedule, int target, int plan_length) const;
+    // that is there. target, share: as in Targets.
+    double fraction(const Schedule& schedule, int target, int plan_length, double share = 1) const;
 
 private:
     // When a block's error was last measured.

@@ -100,7 +100,9 @@ private:
         const std::vector<BlockError> errors = block_errors(result.film, grid_, options_.viewer);
         for (const BlockError& error : errors)
             result.unfinished_blocks += error_of(error) > target();
-        const bool is_reached = is_complete && result.unfinished_blocks == 0;
+        const double within = 1 - double(result.unfinished_blocks) / double(errors.size());
+        const bool is_reached =
+            is_complete && (result.unfinished_blocks == 0 || within >= options_.share);
         result.ending = is_reached       ? Ending::TargetReached
                         : is_complete    ? Ending::SamplesDone
                         : is_time_over() ? Ending::TimeOver
@@ -168,7 +170,7 @@ private:
     {
         measure_team(state_.schedule, state_.film, grid_, options_.viewer);
         forecast_.observe(state_.schedule);
-        const Targets targets{target(), 4 * QUANTUM, options_.is_unbiased};
+        const Targets targets{target(), 4 * QUANTUM, options_.is_unbiased, options_.share};
         const int pilot = state_.schedule.pilot;
         const bool has_begun = begin_adaptive_round(state_.schedule, grid_, quanta_, targets);
         if (state_.schedule.pilot != pilot) state_.film.forget_samples();
@@ -299,8 +301,8 @@ private:
         if (is_adaptive(options_)) {
             progress.error = error_decided_by();
             if (options_.error > 0)
-                progress.fraction =
-                    forecast_.fraction(state_.schedule, target(), int(quanta_.size()));
+                progress.fraction = forecast_.fraction(state_.schedule, target(),
+                                                       int(quanta_.size()), options_.share);
             if (options_.time_limit > 0)
                 progress.fraction = std::max(options_.error > 0 ? progress.fraction : 0,
                                              std::min(1.0, progress.seconds / options_.time_limit));

@@ -38,6 +38,7 @@ struct RenderOptions {
     // Adaptive: blocks end when their predicted error is below `error` JND. A time limit alone
     // lowers a target again and again. Whichever comes first ends the render, `samples` as well.
     double error = 0;       // 0: none
+    double share = 1;       // of the blocks: so many below the target are enough
     double time_limit = 0;  // seconds; 0: none. Each pixel gets a sample whatever it says
     bool is_unbiased = false;
     image::Viewer viewer;
@@ -57,7 +58,7 @@ struct RenderResult {
     bool is_complete = true;  // false: interrupted
     Ending ending = Ending::SamplesDone;
     double target = 0;          // JND that all blocks were to reach when it ended; 0: uniform
-    int unfinished_blocks = 0;  // above the target
+    int unfinished_blocks = 0;  // above the target; with `share` some may be when it is reached
     int blocks = 0;
     int most_samples = 0;           // a pixel's, that the render would have ended at
     double scheduling_seconds = 0;  // merging, errors and decisions

@@ -186,6 +186,38 @@ void begin_after_pilot(Schedule& schedule, const BlockMap& map, std::span<const 
     }
 }
 
+// What a share of the blocks below the target asks of the others, by the errors as they were last
+// measured; whether neighbours are calm is not asked. The other team's round is under way: what
+// counts is how it will end, not how far it has come.
+struct ShareNeeds {
+    bool is_there = false;  // so many are below
+    double quanta = 1e9;    // that the last of them will have had: others need no more
+};
+
+ShareNeeds needs_of_share(const Schedule& schedule, std::span<const Quantum> plan,
+                          const Targets& targets, int least)
+{
+    ShareNeeds needs;
+    if (targets.share >= 1) return needs;
+    std::vector<double> quanta;
+    size_t below = 0;
+    for (size_t b = 0; b < schedule.blocks.size(); ++b) {
+        const BlockState& block = schedule.blocks[b];
+        const bool is_own = int(b) % schedule.teams == schedule.turn;
+        const int samples = samples_of({block.target}, plan);
+        const int error = error_of(block.error);
+        const bool is_measured = samples > least || (is_own && samples == least) || block.is_done;
+        const bool is_below = is_measured && error <= targets.error;
+        below += is_below ? 1 : 0;
+        quanta.push_back(is_below ? 0 : samples_needed(samples, error, targets.error) / QUANTUM);
+    }
+    const size_t wanted = size_t(std::ceil(targets.share * double(quanta.size())));
+    std::nth_element(quanta.begin(), quanta.begin() + std::ptrdiff_t(wanted) - 1, quanta.end());
+    needs.is_there = below >= wanted;
+    needs.quanta = std::ceil(std::max(quanta[wanted - 1], double(least) / QUANTUM));
+    return needs;
+}
+
 }  // namespace
 
 bool begin_adaptive_round(Schedule& schedule, const BlockGrid& grid, std::span<const Quantum> plan,
@@ -202,7 +234,12 @@ bool begin_adaptive_round(Schedule& schedule, const BlockGrid& grid, std::span<c
         block.is_done = block.is_done || block.quanta >= length || schedule.pilot > 0 ||
                         (samples >= least && !targets.is_unbiased &&
                          is_converged(b, map, schedule.blocks, targets.error));
-        if (block.is_done) return;
+    });
+    const ShareNeeds of_share = needs_of_share(schedule, plan, targets, least);
+    for_team(schedule, schedule.turn, [&](size_t b) {
+        BlockState& block = schedule.blocks[b];
+        if (block.is_done || of_share.is_there) return;
+        const int samples = samples_of(block, plan);
         if (samples < least) {
             block.target = doubled(block, plan);
         } else {
@@ -210,9 +247,10 @@ bool begin_adaptive_round(Schedule& schedule, const BlockGrid& grid, std::span<c
                 samples_needed(samples, error_of(block.error), targets.error) - samples;
             const double quanta = std::clamp(std::ceil(more / QUANTUM), 1.0,
                                              std::max(1.0, samples / double(QUANTUM)));
-            block.target = std::min(block.quanta + int(quanta), length);
+            const double most = std::max(of_share.quanta, double(block.quanta));
+            block.target = int(std::min({block.quanta + quanta, most, double(length)}));
         }
-        is_work_left = true;
+        is_work_left = is_work_left || block.target > block.quanta;
     });
     if (is_pilot_over && is_work_left) begin_after_pilot(schedule, map, plan, targets);
     if (is_work_left) ++schedule.round;

@@ -99,13 +99,14 @@ struct Targets {
     int error = error_unit;  // in 1/1024 JND, above 0
     int least_samples = 64;  // before any decision
     bool is_unbiased = false;
+    double share = 1;  // of the blocks, below 1: when so many are below the error, all end
 };
 
 // The next round of the team whose turn it is, whose errors have been measured; the turn goes on.
 // Each block that is not done gets as many quanta as its error asks for, at most as many as it has.
 // A block is done when its error is at most the target, that of each of its pixels at most four
 // times and those of all its neighbours at most twice the target, or when the plan ends. False when
-// all of the team are.
+// all of the team are, or enough of all blocks are below the error.
 //
 // With is_unbiased, and one team, the first least_samples of each block only say how many it needs;
 // schedule.pilot then becomes the number of quanta that the film is to forget.

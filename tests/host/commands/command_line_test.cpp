@@ -28,13 +28,14 @@ TEST(CommandLine, HelpIsThereForEveryCommandAndNamesExitCodes)
 TEST(CommandLine, RenderHelpNamesEveryOption)
 {
     const std::string help = run_diptych({"render", "--help"}).out;
-    for (const char* flag :
-         {"SCENE",       "--output",        "--backend",       "--device",       "--size",
-          "--samples",   "--seed",          "--threads",       "--memory",       "--env",
-          "--camera",    "--eye",           "--target",        "--up",           "--fov",
-          "--pixel",     "--bounces",       "--filter",        "--quiet",        "--strict",
-          "--json",      "--exposure",      "--view",          "--reproducible", "--launch-ms",
-          "--fast-math", "--debug-kernels", "--allow-outside", "--env-rotation", "--env-scale"})
+    for (const char* flag : {"SCENE",           "--output",       "--backend",   "--device",
+                             "--size",          "--samples",      "--seed",      "--threads",
+                             "--memory",        "--env",          "--camera",    "--eye",
+                             "--target",        "--up",           "--fov",       "--pixel",
+                             "--bounces",       "--filter",       "--quiet",     "--strict",
+                             "--json",          "--exposure",     "--view",      "--reproducible",
+                             "--launch-ms",     "--share",        "--fast-math", "--debug-kernels",
+                             "--allow-outside", "--env-rotation", "--env-scale"})
         EXPECT_NE(help.find(flag), std::string::npos) << flag;
 }
 
@@ -130,6 +131,12 @@ TEST(CommandLine, MistakesAreToldInOneLine)
         expect_refusal({command, "--nonsense"}, "see diptych " + command + " --help");
     for (const char* command : {"render", "compare", "explain", "devices", "selftest"})
         expect_refusal({command, "--nonsense"}, "--nonsense");  // others ask for their scene first
+    expect_refusal({"render", "--share", "95"},
+                   "--share: of the blocks below which error? add --error");
+    expect_refusal({"render", "--share", "95", "--unbiased", "--error"},
+                   "--share: --unbiased decides for each block before any is done");
+    expect_refusal({"render", "--share", "0", "--error"}, "--share");
+    expect_refusal({"render", "--share", "101", "--error"}, "--share");
     expect_refusal({"render", "--threads", "many"}, "--threads");
     expect_refusal({"render", "--threads", "-1"}, "--threads");
     expect_refusal({"render", "--samples"}, "--samples");

@@ -139,6 +139,43 @@ TEST(Adaptive, ALooseTargetIsReachedAndSaidToBe)
     EXPECT_GT(missed.unfinished_blocks, 0);
 }
 
+// The hardest blocks need not hold up the others, and the picture is the same wherever it was left.
+TEST(Adaptive, AShareOfTheBlocksIsEnough)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::unique_ptr<Backend> backend = make_backend("cpu", {});
+    backend->upload(scene);
+    RenderOptions options = to_error(1.5);
+    options.samples = 1 << 14;
+    const RenderResult all = render(*backend, scene, options);
+    EXPECT_EQ(all.unfinished_blocks, 0);
+    options.share = 0.8;
+    options.most_items = 5;
+    std::optional<RenderState> state;
+    int calls = 0;
+    options.observe = [&](const RenderState& now) {
+        if (++calls == 20) state = now;
+    };
+    const RenderResult most = render(*backend, scene, options);
+    EXPECT_EQ(most.ending, Ending::TargetReached);
+    EXPECT_GT(most.unfinished_blocks, 0);
+    EXPECT_LE(most.unfinished_blocks, 0.2 * most.blocks);
+    const auto quanta = [](const RenderResult& result) {
+        int sum = 0;
+        for (const BlockState& block : result.schedule.blocks) sum += block.quanta;
+        return sum;
+    };
+    EXPECT_LT(quanta(most), 0.9 * quanta(all));
+    options.observe = nullptr;
+    options.most_items = 0;
+    ASSERT_TRUE(state);
+    EXPECT_TRUE(is_same(picture_of(most), picture_of(render(*backend, scene, options, state))));
+    options.share = 1;  // and it goes on to all
+    const RenderResult rest =
+        render(*backend, scene, options, RenderState{most.film, most.schedule});
+    EXPECT_EQ(rest.unfinished_blocks, 0);
+}
+
 // One batch alone does not know how wrong it is: that is not called right.
 TEST(Adaptive, WhatNobodyMeasuredIsNotCalledRight)
 {

@@ -24,8 +24,10 @@ int quanta_of_all(const Schedule& schedule)
 
 // Renders 64 blocks, whose errors fall as this power of their quanta from 1 to 5 JND, to 1 JND; a
 // few begin far above all others.
-std::vector<Statement> statements(double exponent, int teams)
+std::vector<Statement> statements(double exponent, int teams, double share = 1)
 {
+    Targets targets;
+    targets.share = share;
     const BlockGrid grid = grid_of_blocks(8 * 16, 8 * 16);
     const std::vector<Quantum> plan = quanta_of(1 << 20);
     Schedule schedule{.blocks = std::vector<BlockState>(grid.corners.size())};
@@ -42,30 +44,44 @@ std::vector<Statement> statements(double exponent, int teams)
             block.error = {int(jnd * error_unit), 0};
         });
         forecast.observe(schedule);
-        idle = begin_adaptive_round(schedule, grid, plan, {}) ? 0 : idle + 1;
-        said.push_back(
-            {forecast.fraction(schedule, error_unit, int(plan.size())), quanta_of_all(schedule)});
+        idle = begin_adaptive_round(schedule, grid, plan, targets) ? 0 : idle + 1;
+        said.push_back({forecast.fraction(schedule, error_unit, int(plan.size()), share),
+                        quanta_of_all(schedule)});
     }
     return said;
 }
 
 class ForecastOf : public testing::TestWithParam<double> {};
 
+void expect_true(const std::vector<Statement>& said)
+{
+    const double all = said.back().quanta;
+    int checked = 0;
+    for (const Statement& s : said) {
+        if (s.quanta < 64 * 16) continue;  // each block has been measured twice
+        ++checked;
+        EXPECT_GT(s.fraction, 0.75 * s.quanta / all) << s.quanta;
+        EXPECT_LT(s.fraction, 1.35 * s.quanta / all) << s.quanta;
+    }
+    EXPECT_GT(checked, 3);
+}
+
 TEST_P(ForecastOf, FractionsComeTrue)
 {
     for (const int teams : {1, 2}) {
         const std::vector<Statement> said = statements(GetParam(), teams);
-        const double all = said.back().quanta;
         EXPECT_NEAR(said.back().fraction, 1, 1e-9);
-        int checked = 0;
-        for (const Statement& s : said) {
-            if (s.quanta < 64 * 16) continue;  // each block has been measured twice
-            ++checked;
-            EXPECT_GT(s.fraction, 0.75 * s.quanta / all) << s.quanta;
-            EXPECT_LT(s.fraction, 1.35 * s.quanta / all) << s.quanta;
-        }
-        EXPECT_GT(checked, 3);
+        expect_true(said);
     }
+}
+
+TEST_P(ForecastOf, FractionsOfAShareComeTrue)
+{
+    const std::vector<Statement> all = statements(GetParam(), 2);
+    const std::vector<Statement> most = statements(GetParam(), 2, 0.9);
+    EXPECT_LT(most.back().quanta, 0.9 * all.back().quanta);
+    EXPECT_GT(most.back().fraction, 0.9);
+    expect_true(most);
 }
 
 INSTANTIATE_TEST_SUITE_P(Exponents, ForecastOf, testing::Values(0.5, 0.35, 0.25));

@@ -177,6 +177,26 @@ TEST(Scheduler, UnbiasedRendersDecideOnceByAPilot)
     EXPECT_FALSE(begin_adaptive_round(schedule, grid, plan, targets));
 }
 
+TEST(Scheduler, AShareBelowTheTargetEndsAllAndHardBlocksDoNotRunAhead)
+{
+    const BlockGrid grid = grid_of_blocks(16 * 4, 16);
+    const std::vector<Quantum> plan = quanta_of(1 << 16);
+    Targets targets;
+    targets.share = 0.75;
+    Schedule schedule = rendered(grid, 8);
+    set_errors(schedule, {{50 * one, 0}, {0, 0}, {6 * one / 5, 0}, {0, 0}});
+    ASSERT_TRUE(begin_adaptive_round(schedule, grid, plan, targets));
+    EXPECT_EQ(schedule.blocks[2].target, 12);  // 8 * 1.44, rounded up
+    EXPECT_EQ(schedule.blocks[0].target, 12);  // not 16
+    finish(schedule);
+    set_errors(schedule, {{40 * one, 0}, {0, 0}, {one, 0}, {0, 0}});
+    EXPECT_FALSE(begin_adaptive_round(schedule, grid, plan, targets));
+    EXPECT_FALSE(schedule.blocks[0].is_done);
+    targets.share = 0.76;
+    EXPECT_TRUE(begin_adaptive_round(schedule, grid, plan, targets));
+    EXPECT_EQ(schedule.blocks[0].target, 24);
+}
+
 TEST(Scheduler, TeamsDecideInTurnAndForTheirOwnBlocks)
 {
     const BlockGrid grid = grid_of_blocks(16 * 4, 16);
