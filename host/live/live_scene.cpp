@@ -268,8 +268,8 @@ json LiveScene::values_of(size_t k) const
     }
     for (const TextureArgument& argument :
          data_->textures.functions[size_t(node.function)].arguments) {
-        const json value = json::parse(argument.default_value, nullptr, false);
-        if (!values.contains(argument.name) && !value.is_discarded()) values[argument.name] = value;
+        if (values.contains(argument.name)) continue;
+        if (auto value = default_of(argument)) values[argument.name] = std::move(*value);
     }
     return values;
 }

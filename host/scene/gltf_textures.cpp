@@ -124,13 +124,13 @@ public:
         }
         auto& defaults = defaults_[int(functions_.size())];
         for (const TextureArgument& argument : function.arguments)
-            defaults[argument.name] = argument.default_value;
+            if (auto value = default_of(argument)) defaults[argument.name] = std::move(*value);
         for (const std::string& warning : function.warnings) scene.notice(warning);
         return functions_[key] = scene.add_texture_function(std::move(function));
     }
 
-    // What the file says an argument is where a node gives none: JSON, by name.
-    const std::map<std::string, std::string>& defaults_of(int function) const
+    // What the file says an argument is where a node gives none, by name.
+    const std::map<std::string, json>& defaults_of(int function) const
     {
         return defaults_.at(function);
     }
@@ -308,7 +308,7 @@ private:
     std::vector<Entry> entries_;
     size_t first_flag_ = 0;
     std::map<std::pair<std::string, std::string>, int> functions_;
-    std::map<int, std::map<std::string, std::string>> defaults_;
+    std::map<int, std::map<std::string, json>> defaults_;
 };
 
 // Numbers, images or a node: an array gives its elements one after the other.
@@ -365,12 +365,8 @@ void GltfLoader::add_textures()
             node.values[name] = dumped(value);
         };
         for (const auto& [name, value] : entry.arguments.items()) give(name, value, "argument");
-        for (const auto& [name, text] : reader.defaults_of(node.function)) {
-            json value = json::parse(text, nullptr, false);
-            if (value.is_discarded() && text == "white") value = text;
-            if (!node.arguments.count(name) && !value.is_discarded())
-                give(name, value, "default of");
-        }
+        for (const auto& [name, value] : reader.defaults_of(node.function))
+            if (!node.arguments.count(name)) give(name, value, "default of");
         texture_nodes_.push_back(std::move(node));
     }
     if (!options_.solo.empty()) show_only(options_.solo, texture_nodes_, materials_);

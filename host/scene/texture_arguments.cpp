@@ -84,7 +84,7 @@ bool add_numbers(const json& value, const std::string& where, int depth,
             return add_numbers(element, where, depth + 1, numbers);
         });
     }
-    if (value.is_object()) return false;
+    if (value.is_object() || value.is_string()) return false;
     if (value.is_boolean()) {
         numbers.push_back(value.get<bool>() ? 1 : 0);
         return true;
@@ -114,6 +114,14 @@ TextureValue parse_texture_value(const std::string& text, const std::string& whe
 std::string dumped(const json& value)
 {
     return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::optional<json> default_of(const TextureArgument& argument)
+{
+    if (argument.default_value == "white") return argument.default_value;
+    json value = json::parse(argument.default_value, nullptr, false);
+    if (value.is_discarded()) return std::nullopt;
+    return value;
 }
 
 std::optional<std::vector<double>> constant_numbers(const json& value, const std::string& where)

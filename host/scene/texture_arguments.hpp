@@ -22,8 +22,11 @@ TextureValue parse_texture_value(const std::string& text, const std::string& whe
 // JSON as TextureNode::values holds it.
 std::string dumped(const nlohmann::json& value);
 
+// What the comment in the function's file gives where nobody else does; none: it gives nothing.
+std::optional<nlohmann::json> default_of(const TextureArgument& argument);
+
 // A number, a boolean, or an array of them or of such arrays: their numbers, end to end. None when
-// it names images or nodes. Throws SceneError for all else.
+// there are texts or objects in it, which may name images or nodes. Throws SceneError for all else.
 std::optional<std::vector<double>> constant_numbers(const nlohmann::json& value,
                                                     const std::string& where);
 

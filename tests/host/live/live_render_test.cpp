@@ -20,6 +20,12 @@ namespace fs = std::filesystem;
 
 constexpr int samples = 4;
 
+// A PNG of one texel.
+constexpr const char* image_uri =
+    "data:image/png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5E"
+    "rkJggg==";
+
 class LiveScenes : public testing::TestWithParam<std::string> {
 protected:
     LiveScenes()
@@ -224,6 +230,38 @@ TEST_P(LiveScenes, MoreThanArgumentsLoadsTheSceneAgain)
     EXPECT_TRUE(is_told) << testing::PrintToString(told_);
     const std::vector<fs::path> files = {folder_ / "paint.c", folder_ / "scene.gltf"};
     EXPECT_EQ(watched_, files);
+}
+
+// A default that is no JSON, images in place of it, and back.
+TEST_P(LiveScenes, AnImageIsTypedAsItIsSet)
+{
+    std::string text = painted_source;
+    const auto put = [&](const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+    };
+    put("float4 userProc(", "// image (sam2D; default white): over all\n"
+                            "float4 userProc(sam2D image, ");
+    put("return to_float4(stripe", "stripe *= tex2D(image, make_float2(0.5f, 0.5f)).xyz;\n"
+                                   "return to_float4(stripe");
+    folder_.write("paint.c", text);
+    edit_scene([](auto& d) {
+        d["images"] = {{{"uri", image_uri}}};
+        d["textures"] = {{{"source", 0}}};
+    });
+    run({{.typed = {"paint.scale=3"}},
+         {.typed = {"paint.image={\"texture\": 0}"}},
+         {.typed = {"paint.image=\"black\""}},
+         {.typed = {"paint.image=\"white\""}}});
+    EXPECT_EQ(warned_, std::vector<std::string>{
+                           folder_ / "scene.gltf" +
+                           ": texture node paint: argument image: must be numbers, an image as "
+                           "{\"texture\": N} or \"white\", or a node"});
+    ASSERT_EQ(pictures_.size(), 4u) << testing::PrintToString(told_);
+    EXPECT_EQ(told_[0].find("paint.scale=3: nothing to compile"), 0u) << told_[0];
+    EXPECT_EQ(pictures_[1], fresh({"paint.scale=3"}));
+    EXPECT_NE(pictures_[2], pictures_[1]);
+    EXPECT_EQ(pictures_[2], fresh({"paint.scale=3", "paint.image={\"texture\": 0}"}));
+    EXPECT_EQ(pictures_[3], pictures_[1]);
 }
 
 // Two squares in a corner shine on each other: how light sampling divides itself between them
