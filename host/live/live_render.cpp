@@ -135,6 +135,10 @@ void LiveRender::apply(const Requests& requests)
             const Edit edit = scene_.set_value(value);
             follow(edit);
             begin_again(edit, requests.since);
+            if (edit.kind != EditKind::scene) continue;
+            held_.clear();  // the files were read anew
+            has_told_error_ = false;
+            hooks_.watch_files(scene_.files(), scene_.read_at());
         } catch (const std::runtime_error& error) {
             hooks_.warn(error.what());
         }

@@ -67,6 +67,12 @@ bool is_same(const OcclusionRequest& a, const OcclusionRequest& b)
            a.hemisphere == b.hemisphere && a.is_same_object == b.is_same_object;
 }
 
+std::string takes_others(const TextureFunction& function)
+{
+    return fmt::format("{}: {} takes or asks for other things than before",
+                       fs::path(function.file).filename().string(), function.entry);
+}
+
 // Whether all but the function's text is as it was.
 bool takes_the_same(const TextureFunction& a, const TextureFunction& b)
 {
@@ -109,6 +115,15 @@ bool shines(const SceneData& scene, IsMeant is_meant)
         scene.textures.attachments, [&](const TextureAttachment& attachment) {
             return is_meant(attachment) && regions.contains(attachment.first_word);
         });
+}
+
+// Adds a value in the place of an earlier one of the same argument.
+void put(std::vector<std::string>& values, const TextureValue& set, const std::string& text)
+{
+    std::erase_if(values, [&](const std::string& old) {
+        return old.starts_with(set.node + "." + set.argument + "=");
+    });
+    values.push_back(text);
 }
 
 void set_word(SceneData& scene, size_t word, uint value)
@@ -190,6 +205,10 @@ Edit LiveScene::attempt(Change change)
 
 Edit LiveScene::reload(const std::string& why)
 {
+    read_at_ = fs::file_time_type::clock::now();
+    text_ = read_text(file_);
+    attempted_ = text_.files;
+    std::ranges::move(std::exchange(waiting_, {}), std::back_inserter(values_));
     auto fresh = std::make_unique<SceneData>(load_(values_));
     std::vector<std::string> news;
     std::ranges::copy_if(fresh->notices, std::back_inserter(news), [&](const std::string& line) {
@@ -218,6 +237,7 @@ Edit LiveScene::look_again(const std::vector<fs::path>& changed)
         std::string reason;
         if (!translate_again(changed, edit, reason) || !update_values(edit, reason))
             return reload(reason);
+        waiting_.clear();  // no file wants them any more
         return edit;
     });
 }
@@ -233,8 +253,7 @@ bool LiveScene::translate_again(const std::vector<fs::path>& changed, Edit& edit
             translate_texture({file, function.file, function.asked, function.id});
         fresh.asked = function.asked;
         if (!takes_the_same(function, fresh)) {
-            reason = fmt::format("{}: {} takes or asks for other things than before",
-                                 file.filename().string(), fresh.entry);
+            reason = takes_others(fresh);
             return false;
         }
         const bool is_other = fresh.cpp != function.cpp || fresh.opencl != function.opencl;
@@ -320,13 +339,13 @@ bool LiveScene::write_value(size_t k, const std::string& name, const json& value
         return false;
     }
     check_argument({.name = node.name}, function, name, {.numbers = *numbers});
-    const auto at = std::ranges::find(function.arguments, name, &TextureArgument::name);
-    const std::vector<uint> words = constant_words(*at, *numbers);
-    const size_t place = size_t(at - function.arguments.begin());
+    const TextureArgument& argument = argument_named(name, {.name = node.name}, function);
+    const std::vector<uint> words = constant_words(argument, *numbers);
+    const size_t place = size_t(&argument - function.arguments.data());
     for (const TextureAttachment& attachment : data_->textures.attachments) {
         if (attachment.node_id != int(k)) continue;
         const size_t descriptor = size_t(attachment.first_word) + 4 * place;
-        const size_t elements = words.size() / size_t(stride_of(*at));
+        const size_t elements = words.size() / size_t(stride_of(argument));
         if (int(word_at(*data_, descriptor)) != -1 ||
             word_at(*data_, descriptor + 2) != uint(elements))
             return false;
@@ -339,23 +358,46 @@ bool LiveScene::write_value(size_t k, const std::string& name, const json& value
     return true;
 }
 
+// Of an argument that at best the function's file as it is by now declares: the scene is loaded
+// again. Where that fails for want of more values, this one waits for them.
+Edit LiveScene::set_new_value(const TextureNodeValues& node, const std::string& text)
+{
+    const TextureFunction& function = data_->textures.functions[size_t(node.function)];
+    const TextureFunction fresh =
+        translate_texture({function.file, function.file, function.asked, function.id});
+    const TextureValue set = parse_texture_value(text, printable(text));
+    const TextureNode named{.name = node.name};
+    argument_named(set.argument, named, fresh);
+    const std::string where =
+        fmt::format("texture node {}: argument {}", node.name, printable(set.argument));
+    if (const auto numbers = constant_numbers(set.value, where))
+        check_argument(named, fresh, set.argument, {.numbers = *numbers});
+    put(waiting_, set, text);
+    const std::vector<std::string> waiting = waiting_;
+    try {
+        return reload(takes_others(fresh));
+    } catch (...) {
+        waiting_ = waiting;
+        throw;
+    }
+}
+
 Edit LiveScene::set_value(const std::string& text)
 {
     const bool had_failed = has_failed_;
     const auto change = [&]() -> Edit {
         const TextureValue set = parse_texture_value(text, printable(text));
         const auto& nodes = data_->textures.nodes;
-        if (std::ranges::find(nodes, set.node, &TextureNodeValues::name) == nodes.end()) {
+        const auto node = std::ranges::find(nodes, set.node, &TextureNodeValues::name);
+        if (node == nodes.end()) {
             std::vector<std::string> names;
-            for (const TextureNodeValues& node : nodes) names.push_back(printable(node.name));
+            for (const TextureNodeValues& other : nodes) names.push_back(printable(other.name));
             if (names.size() > 8) names.resize(8);
             throw SceneError(fmt::format("{}: names no texture node; there are {}: {}",
                                          printable(text), nodes.size(), fmt::join(names, ", ")));
         }
-        std::erase_if(values_, [&](const std::string& old) {
-            return old.starts_with(set.node + "." + set.argument + "=");
-        });
-        values_.push_back(text);
+        if (!node->values.contains(set.argument)) return set_new_value(*node, text);
+        put(values_, set, text);
         Edit edit;
         std::string reason;
         return update_values(edit, reason) ? edit : reload(reason);

@@ -76,6 +76,7 @@ private:
     Edit attempt(Change change);
     static Text read_text(const std::filesystem::path& file);
     Edit reload(const std::string& why);
+    Edit set_new_value(const TextureNodeValues& node, const std::string& text);
     bool translate_again(const std::vector<std::filesystem::path>& changed, Edit& edit,
                          std::string& reason);
     bool update_values(Edit& edit, std::string& reason);
@@ -88,6 +89,7 @@ private:
     std::filesystem::path file_;
     std::vector<std::filesystem::path> more_;
     std::vector<std::string> values_;
+    std::vector<std::string> waiting_;  // for other values that the files as they are want, too
     Loader load_;
     Text text_;
     std::vector<std::filesystem::path> attempted_;

@@ -131,14 +131,20 @@ std::optional<std::vector<double>> constant_numbers(const json& value, const std
     return numbers;
 }
 
-void check_argument(const TextureNode& node, const TextureFunction& function,
-                    const std::string& name, const TextureInput& value)
+const TextureArgument& argument_named(const std::string& name, const TextureNode& node,
+                                      const TextureFunction& function)
 {
     const auto at = std::ranges::find(function.arguments, name, &TextureArgument::name);
     if (at == function.arguments.end())
         fail(node, fmt::format("{} has no argument {}; it takes: {}", function.entry,
                                printable(name), argument_names(function)));
-    check_argument(node, *at, value);
+    return *at;
+}
+
+void check_argument(const TextureNode& node, const TextureFunction& function,
+                    const std::string& name, const TextureInput& value)
+{
+    check_argument(node, argument_named(name, node, function), value);
 }
 
 void check_node(const TextureNode& node, const TextureFunction& function)

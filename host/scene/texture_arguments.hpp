@@ -30,6 +30,9 @@ std::optional<nlohmann::json> default_of(const TextureArgument& argument);
 std::optional<std::vector<double>> constant_numbers(const nlohmann::json& value,
                                                     const std::string& where);
 
+// The function's argument of that name. Throws SceneError where it has none.
+const TextureArgument& argument_named(const std::string& name, const TextureNode& node,
+                                      const TextureFunction& function);
 // Whether the node gives the function what it takes, all of it and nothing else. Throws SceneError
 // that names the node and the argument; the second for one argument alone.
 void check_node(const TextureNode& node, const TextureFunction& function);

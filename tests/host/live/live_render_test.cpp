@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <deque>
+#include <fmt/format.h>
 
 using namespace diptych;
 
@@ -230,6 +231,57 @@ TEST_P(LiveScenes, MoreThanArgumentsLoadsTheSceneAgain)
     EXPECT_TRUE(is_told) << testing::PrintToString(told_);
     const std::vector<fs::path> files = {folder_ / "paint.c", folder_ / "scene.gltf"};
     EXPECT_EQ(watched_, files);
+}
+
+// An edit is refused for want of a value; what is typed counts for the file as it is saved.
+TEST_P(LiveScenes, ArgumentsThatAnEditDeclaresCanBeTyped)
+{
+    const auto widen = [&] {
+        edit_texture("float3 tint)\n{\n    float3 place",
+                     "float3 tint, float dim)\n{\n    tint = dim * tint;\n    float3 place");
+    };
+    const std::string refused = folder_ / "scene.gltf" +
+                                ": texture node {}: its argument float dim is missing; give it a "
+                                "value: --set {}.dim=JSON, in the scene, or as a default in the "
+                                "file's comment";
+    run({{.saved = {"paint.c"}, .before = widen},
+         {.typed = {"paint.din=2"}},
+         {.typed = {"left.dim=2"}},
+         {.typed = {"paint.scale=5"}},
+         {.typed = {"paint.dim=[3, 4]"}},
+         {.typed = {"paint.dim=0.25"}},
+         {.typed = {"paint.dim=0.75"}}});
+    ASSERT_EQ(warned_.size(), 4u) << testing::PrintToString(warned_);
+    EXPECT_EQ(warned_[0], fmt::format(fmt::runtime(refused), "left", "left"));
+    EXPECT_EQ(warned_[1], "texture node paint: userProc has no argument din; it takes: float "
+                          "scale, float3 tint, float dim");
+    EXPECT_EQ(warned_[2], fmt::format(fmt::runtime(refused), "paint", "paint"));
+    EXPECT_EQ(warned_[3], "texture node paint: its argument dim is of type float, but has 2 "
+                          "numbers; give it 1");
+    ASSERT_EQ(pictures_.size(), 4u) << testing::PrintToString(told_);
+    EXPECT_NE(pictures_[1], pictures_[0]);  // another scale, in the text of before
+    EXPECT_EQ(
+        told_[1].find(
+            "paint.c: userProc takes or asks for other things than before: the whole scene is "
+            "loaded again; first new sample after"),
+        0u)
+        << told_[1];
+    EXPECT_EQ(pictures_[2], fresh({"left.dim=2", "paint.scale=5", "paint.dim=0.25"}));
+    EXPECT_EQ(told_[2].find("paint.dim=0.75: nothing to compile"), 0u) << told_[2];
+    EXPECT_EQ(pictures_[3], fresh({"left.dim=2", "paint.scale=5", "paint.dim=0.75"}));
+}
+
+TEST_P(LiveScenes, AValueWaitsOnlyForAnEditThatDeclaresIt)
+{
+    const std::string link = "paint.scale={\"node\": \"left\"}";
+    const auto widen = [&] { edit_texture("float3 tint)", "float3 tint, float dim)"); };
+    run({{.saved = {"paint.c"}, .before = widen},
+         {.typed = {"left.dim=2"}},
+         {.saved = {"paint.c"}, .before = [&] { edit_texture("wave * wave, p.y", "wave, p.x"); }},
+         {.typed = {link}}});
+    EXPECT_EQ(warned_.size(), 2u) << testing::PrintToString(warned_);
+    ASSERT_EQ(pictures_.size(), 3u) << testing::PrintToString(warned_);
+    EXPECT_EQ(pictures_[2], fresh({link}));
 }
 
 // A default that is no JSON, images in place of it, and back.
