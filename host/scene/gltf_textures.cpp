@@ -179,6 +179,7 @@ private:
         for (const json& source : array_of(extension, "sources", where))
             files.push_back(
                 source_file(source, fmt::format("{}.sources[{}]", where, files.size())));
+        std::map<std::string, size_t> first_named;
         for (const json& node : array_of(extension, "nodes", where)) {
             const std::string at = fmt::format("{}.nodes[{}]", where, entries_.size());
             expect_object(node, at, {"name", "source", "function", "arguments", "extras"});
@@ -188,6 +189,11 @@ private:
             Entry entry;
             entry.name = printable(text_of(node, "name", at));
             if (entry.name.empty()) entry.name = fmt::format("node {}", entries_.size());
+            const auto [first, is_new] = first_named.try_emplace(entry.name, entries_.size());
+            if (!is_new)
+                fail(at + ".name", fmt::format("{} is the name of nodes[{}] too; give one of them "
+                                               "another",
+                                               entry.name, first->second));
             entry.file = files[source.get<size_t>()];
             entry.function = text_of(node, "function", at);
             if (node.contains("arguments")) entry.arguments = node["arguments"];

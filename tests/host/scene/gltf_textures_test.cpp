@@ -230,6 +230,18 @@ const Hostile hostile[] = {
      ".nodes[1].source: must name one of the 2 sources"},
     {"name is a number", [](json& e) { e["nodes"][1]["name"] = 5; },
      ".nodes[1].name: must be a string"},
+    {"two nodes of one name", [](json& e) { e["nodes"][1]["name"] = "level"; },
+     "DIPTYCH_procedural_texture.nodes[1].name: level is the name of nodes[0] too; give one of "
+     "them "
+     "another"},
+    {"a name that another has for want of one",
+     [](json& e) {
+         e["nodes"][1]["name"] = "node 0";
+         e["nodes"][0].erase("name");
+         e["nodes"][1]["arguments"]["inner"] = {{"node", 0}};
+     },
+     "DIPTYCH_procedural_texture.nodes[1].name: node 0 is the name of nodes[0] too; give one of "
+     "them another"},
     {"unknown function", [](json& e) { e["nodes"][1]["function"] = "absent"; }, "absent"},
     {"function is an injection", [](json& e) { e["nodes"][1]["function"] = "a; system(\"true\")"; },
      "texture node paint"},
