@@ -56,14 +56,20 @@ void write_text(const fs::path& file, const std::string& text)
     fs::rename(part, file);
 }
 
+bool is_compiler_chosen()
+{
+    const char* chosen = std::getenv("DIPTYCH_CXX");
+    return chosen && *chosen;
+}
+
 // What the compiler is and what -march=native means to it.
 std::string compiler()
 {
-    const char* chosen = std::getenv("DIPTYCH_CXX");
-    if (chosen && *chosen) {
+    if (is_compiler_chosen()) {
+        const std::string chosen = std::getenv("DIPTYCH_CXX");
         const std::string found = find_program(chosen);
         if (found.empty())
-            throw std::runtime_error("DIPTYCH_CXX: " + std::string(chosen) +
+            throw std::runtime_error("DIPTYCH_CXX: " + chosen +
                                      ": no such program; name a C++20 compiler, or unset it");
         return found;
     }
@@ -224,6 +230,21 @@ fs::path headers()
     return folder;
 }
 
+// Of a program that is no compiler, or a broken one.
+[[noreturn]] void fail_without_message(const std::string& program, int exit_code)
+{
+    const std::string what = program + ": ends " +
+                             (exit_code == 0 ? "without an error, but made nothing"
+                                             : "with exit code " + std::to_string(exit_code) +
+                                                   " and without a message") +
+                             " of the generated code; ";
+    throw std::runtime_error(is_compiler_chosen()
+                                 ? "DIPTYCH_CXX: " + what + "name a C++20 compiler, or unset it"
+                                 : "procedural textures: " + what +
+                                       "repair it, or name another C++20 compiler by "
+                                       "DIPTYCH_CXX");
+}
+
 // Runs the compiler, and keeps what it makes with its digest.
 void make(std::vector<std::string> command, const fs::path& object, const fs::path& functions)
 {
@@ -231,19 +252,22 @@ void make(std::vector<std::string> command, const fs::path& object, const fs::pa
     const fs::path part = unfinished(object);
     command.insert(command.end(), {"-o", part.string()});
     const Finished done = run_program_within(most_seconds, most_gibibytes, command);
-    if (done.exit_code != 0) {
+    const std::string made = done.exit_code == 0 ? text_of(part) : "";
+    if (made.empty()) {
         std::error_code ignored;
         fs::remove(part, ignored);
         if (done.seconds > 0.9 * most_seconds)
             throw std::runtime_error("procedural textures: " + command[0] + " was stopped after " +
                                      std::to_string(most_seconds) + " s over " +
                                      functions.string() + "; make that texture's code shorter");
+        if (done.exit_code == 0 || done.output.empty())
+            fail_without_message(command[0], done.exit_code);
         throw std::runtime_error("procedural textures: " + command[0] +
                                  " refuses the generated code (" + functions.string() + "):\n" +
                                  done.output);
     }
     Sha256 hash;
-    hash.add(text_of(part));
+    hash.add(made);
     write_text(object.string() + ".sha256", hash.finish());
     fs::rename(part, object);
 }

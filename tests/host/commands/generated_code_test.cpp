@@ -106,6 +106,22 @@ TEST_P(GeneratedCode, WithoutACompilerOpenclStillRuns)
               "and this backend needs one; install it, set DIPTYCH_CXX, or use --backend opencl");
 }
 
+TEST_P(GeneratedCode, ACompilerThatMakesNothingIsNamed)
+{
+    if (GetParam() == "opencl") GTEST_SKIP() << "brings its own compiler";
+    for (const auto& [program, wanted] :
+         {std::pair{"/bin/true", "ends without an error, but made nothing"},
+          {"/bin/false", "ends with exit code 1 and without a message"}}) {
+        const Outcome outcome = render({}, "a.exr", {{"DIPTYCH_CXX", program}});
+        EXPECT_EQ(outcome.exit_code, 2) << outcome.text();
+        ASSERT_EQ(outcome.err_lines().size(), 1u) << outcome.text();
+        EXPECT_EQ(outcome.err_lines()[0], std::string("diptych: DIPTYCH_CXX: ") + program + ": " +
+                                              wanted +
+                                              " of the generated code; name a C++20 compiler, or "
+                                              "unset it");
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Backends, GeneratedCode, testing::Values("cpu", "twin", "opencl"),
                          [](const auto& info) { return info.param; });
 
