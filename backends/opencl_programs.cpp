@@ -23,12 +23,13 @@ std::string fault_option(const std::string& fault)
     return " -D FAULT=FAULT_" + (fault.empty() ? "none" : fault);
 }
 
-std::string source_for(Stage stage, const BackendOptions& options, const SceneData& scene)
+std::string source_for(Stage stage, const BackendOptions& options, const SceneData& scene,
+                       bool has_own_lines = false)
 {
     std::string source = kernel_source(stage);
     if (stage == STAGE_evaluate_textures)
-        source =
-            opencl_texture_program(scene, source, {options.generated_dir, options.use_generated});
+        source = opencl_texture_program(
+            scene, source, {options.generated_dir, options.use_generated, has_own_lines});
     const std::string exact = "FP_CONTRACT OFF";
     const size_t at = source.find(exact);
     if (options.fast_math && at != std::string::npos)
@@ -69,6 +70,22 @@ Built build(const opencl::Context& context, const DeviceInfo& device, const std:
     return built;
 }
 
+Built build_stage(const opencl::Context& context, const DeviceInfo& device, Stage stage,
+                  const BackendOptions& options, const SceneData& scene, const ProgramCache& cache)
+{
+    const std::string flags = program_options(device, options, scene);
+    try {
+        return build(context, device, source_for(stage, options, scene), flags, stage_names[stage],
+                     cache);
+    } catch (const std::runtime_error&) {
+        if (stage != STAGE_evaluate_textures || options.use_generated.empty()) throw;
+        // once more, for a message that names lines of the edited copy
+        build(context, device, source_for(stage, options, scene, true), flags, stage_names[stage],
+              cache);
+        throw;
+    }
+}
+
 void store(const Built& built, Stage stage, ProgramCache& cache)
 {
     if (built.new_binary.empty()) return;
@@ -97,17 +114,14 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
                           ProgramCache& cache)
 {
     const unsigned effects = scene.effects;
-    const std::string flags = program_options(device, options, scene);
     // one after the other, for drivers whose compiler does not stand threads (Oclgrind)
     const auto how = options.threads == 1 ? std::launch::deferred : std::launch::async;
     std::array<std::future<Built>, STAGE_COUNT> jobs;
     for (int k = 0; k < STAGE_COUNT; ++k) {
         const Stage stage = Stage(k);
         if (!is_active(stage, effects)) continue;
-        jobs[k] = std::async(how, [&, stage] {
-            return build(context, device, source_for(stage, options, scene), flags,
-                         stage_names[stage], cache);
-        });
+        jobs[k] = std::async(
+            how, [&, stage] { return build_stage(context, device, stage, options, scene, cache); });
     }
     ProgramSet set;
     for (int k = 0; k < STAGE_COUNT; ++k) {
@@ -125,8 +139,7 @@ opencl::Program build_texture_program(const opencl::Context& context, const Devi
                                       ProgramCache& cache)
 {
     const Stage stage = STAGE_evaluate_textures;
-    Built built = build(context, device, source_for(stage, options, scene),
-                        program_options(device, options, scene), stage_names[stage], cache);
+    Built built = build_stage(context, device, stage, options, scene, cache);
     store(built, stage, cache);
     return std::move(*built.program);
 }

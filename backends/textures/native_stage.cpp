@@ -354,10 +354,22 @@ NativeStage::NativeStage(const SceneData& scene, const NativeStageOptions& optio
     const fs::path object = cache_folder() / "textures" / key_of(program, whole) / "stage.so";
     if (!is_whole(object)) {
         const fs::path root = headers();
-        if (is_in_lanes(options))
-            compile_lanes(program, sources_in_lanes(scene, textures, flags), root, object);
-        else
-            compile(program, whole, root, object);
+        const auto compile_to = [&](const fs::path& made, const CppTextures& texts) {
+            whole.functions = texts.all;
+            if (is_in_lanes(options))
+                compile_lanes(program, sources_in_lanes(scene, texts, flags), root, made);
+            else
+                compile(program, whole, root, made);
+        };
+        try {
+            compile_to(object, textures);
+        } catch (const std::runtime_error&) {
+            if (options.use_generated.empty()) throw;
+            // once more, for a message that names lines of the edited copy
+            compile_to(object.string() + ".copy",
+                       cpp_textures(scene, {"", options.use_generated, true}));
+            throw;
+        }
         count_texture_compilation();
         was_compiled_ = true;
     }

@@ -55,6 +55,24 @@ std::string head_line(const SceneData& scene)
            ", " + hash.finish().substr(0, 16) + "\n";
 }
 
+// The text without its #line directives, as lines of this file.
+std::string as_lines_of(const std::filesystem::path& file, const std::string& text)
+{
+    std::string name;
+    for (const char c : file.string()) {
+        if (c == '"' || c == '\\') name += '\\';
+        name += static_cast<unsigned char>(c) < 32 ? '_' : c;
+    }
+    std::string result = "#line 1 \"" + name + "\"\n";
+    for (size_t at = 0; at < text.size();) {
+        const size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+        const std::string line = text.substr(at, end - at);
+        result += line.starts_with("#line ") ? "\n" : line;
+        at = end;
+    }
+    return result;
+}
+
 // Writes the generated code where people can see it, and takes theirs where they give it.
 std::string through_folders(const std::string& text, const std::string& name,
                             const SceneData& scene, const GeneratedFolders& folders)
@@ -84,7 +102,7 @@ std::string through_folders(const std::string& text, const std::string& name,
             ": its first line does not name the textures of this scene and what they take; write "
             "it anew with --generated-dir " +
             folders.use + ", and keep that line");
-    return own;
+    return folders.has_own_lines ? as_lines_of(file, own) : own;
 }
 
 }  // namespace

@@ -89,6 +89,26 @@ TEST_P(GeneratedCode, OtherTexturesAreRefused)
     EXPECT_EQ(refused.err_lines().size(), 1u) << refused.err;
 }
 
+// By the lines of the copy, where the error is to be mended; not by those of the user's file.
+TEST_P(GeneratedCode, AnErrorInAnEditedCopyNamesItsLine)
+{
+    if (!is_usable()) GTEST_SKIP() << "no OpenCL device";
+    const std::string code = folder_ / "code";
+    ASSERT_EQ(render({"--generated-dir", code}, "a.exr").exit_code, 0);
+    std::string edited = text();
+    const size_t at = edited.find("0.25f");
+    ASSERT_NE(at, std::string::npos) << edited;
+    folder_.write(file(), edited.replace(at, 5, "0.25f0"));
+    const Outcome refused = render({"--use-generated", code}, "b.exr");
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find((folder_ / file()) + ":" +
+                               std::to_string(line_of(edited, "0.25f0")) + ":"),
+              std::string::npos)
+        << refused.err;
+    EXPECT_EQ(refused.err.find("paint.c"), std::string::npos) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "b.exr"));
+}
+
 // The panels part: one needs a compiler when it runs, the other brings its own.
 TEST_P(GeneratedCode, WithoutACompilerOpenclStillRuns)
 {
