@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 
 namespace diptych {
 namespace {
 
 const std::string place = "#pragma diptych textures\n";
+constexpr const char* cpp_name = "functions.hpp";
+constexpr const char* opencl_name = "functions.cl";
 
 // What the stage looks at beside the textures themselves.
 constexpr unsigned effects_read = EFFECT_INSTANCES | EFFECT_SMOOTH_NORMALS | EFFECT_VERTEX_COLOR |
@@ -55,6 +58,24 @@ std::string head_line(const SceneData& scene)
            ", " + hash.finish().substr(0, 16) + "\n";
 }
 
+const std::string texts_begin = "// Of the texts";
+
+std::string text_mark(const TextureFunction& function)
+{
+    Sha256 hash;
+    hash.add(text_of(function.file));
+    return " " + function.id + " " + hash.finish().substr(0, 16);
+}
+
+// The second line of a generated file: what users' files were when it was made. No names, which
+// could end a comment or a line.
+std::string texts_line(const SceneData& scene)
+{
+    std::string line = texts_begin;
+    for (const TextureFunction& function : scene.textures.functions) line += text_mark(function);
+    return line + "\n";
+}
+
 // The text without its #line directives, as lines of this file.
 std::string as_lines_of(const std::filesystem::path& file, const std::string& text)
 {
@@ -83,7 +104,7 @@ std::string through_folders(const std::string& text, const std::string& name,
         std::filesystem::create_directories(folders.write, ignored);
         const std::filesystem::path file = std::filesystem::path(folders.write) / name;
         std::ofstream out(file, std::ios::binary);
-        out << head << text;
+        out << head << texts_line(scene) << text;
         out.close();
         if (!out.good())
             throw std::runtime_error("--generated-dir: " + file.string() +
@@ -116,14 +137,38 @@ CppTextures cpp_textures(const SceneData& scene, const GeneratedFolders& folders
     textures.definitions = line + definitions(scene) + effects;
     for (const TextureFunction& function : scene.textures.functions)
         textures.all += function.cpp + "\n";
-    textures.all =
-        through_folders(textures.all + textures.definitions, "functions.hpp", scene, folders);
+    textures.all = through_folders(textures.all + textures.definitions, cpp_name, scene, folders);
     const bool stand_alone = folders.use.empty() && !scene.textures.is_one_text;
     for (const TextureFunction& function : scene.textures.functions)
         textures.functions.push_back(stand_alone ? function.cpp + "\n" + line +
                                                        context_definitions(scene) + effects
                                                  : textures.all);
     return textures;
+}
+
+std::vector<std::string> notices_of_generated(const SceneData& scene, const std::string& folder,
+                                              const std::string& backend)
+{
+    std::vector<std::string> names;
+    if (backend != "opencl") names.push_back(cpp_name);
+    if (backend.find("opencl") != std::string::npos) names.push_back(opencl_name);
+    std::vector<std::string> notices;
+    for (const std::string& name : names) {
+        const std::filesystem::path file = std::filesystem::path(folder) / name;
+        std::ifstream in(file);
+        std::string line;
+        std::getline(in, line);
+        if (!std::getline(in, line) || !line.starts_with(texts_begin)) continue;
+        std::set<std::string> edited;
+        for (const TextureFunction& function : scene.textures.functions)
+            if (line.find(text_mark(function)) == std::string::npos) edited.insert(function.file);
+        for (const std::string& source : edited)
+            notices.push_back("--use-generated: " + file.string() +
+                              ": made before the last edit of " + source +
+                              ", and runs as it is; for that edit write it anew with "
+                              "--generated-dir");
+    }
+    return notices;
 }
 
 std::string opencl_texture_program(const SceneData& scene, const std::string& stage,
@@ -135,7 +180,7 @@ std::string opencl_texture_program(const SceneData& scene, const std::string& st
                                  "rebuild the program");
     std::string text;
     for (const TextureFunction& function : scene.textures.functions) text += function.opencl + "\n";
-    text = through_folders(text + definitions(scene), "functions.cl", scene, folders);
+    text = through_folders(text + definitions(scene), opencl_name, scene, folders);
     const auto line = std::count(stage.begin(), stage.begin() + long(at), '\n');
     text += "#line " + std::to_string(line + 2) + " \"evaluate_textures (flattened)\"\n";
     return std::string(stage).replace(at, place.size(), text);

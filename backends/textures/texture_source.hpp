@@ -26,6 +26,11 @@ struct CppTextures {
 // that of other textures.
 CppTextures cpp_textures(const SceneData& scene, const GeneratedFolders& folders = {});
 
+// About the code in the folder that this backend (its name) runs: a line for each user's file that
+// was edited since the code was made of it.
+std::vector<std::string> notices_of_generated(const SceneData& scene, const std::string& folder,
+                                              const std::string& backend);
+
 // The OpenCL program of the stage. `stage`: its flattened source, with the pragma in it. Throws
 // likewise.
 std::string opencl_texture_program(const SceneData& scene, const std::string& stage,

@@ -249,6 +249,7 @@ int run_render_command(const RenderCommand& command)
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
     SceneData scene = load_from_flags(run.scene, is_adaptive(options));
+    add_generated_notices(scene, run.device);
     check_film_fits(scene, options);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
     std::optional<RenderState> start =

@@ -1,15 +1,18 @@
 #include "host/commands/scene_flags.hpp"
 
 #include "backends/device_list.hpp"
+#include "backends/textures/texture_source.hpp"
 #include "common/textures/procedural.h"
 #include "host/render/film.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <numbers>
 #include <stdexcept>
 
@@ -283,6 +286,14 @@ SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
     settings.width = load.width;
     settings.height = load.height;
     return scene;
+}
+
+void add_generated_notices(SceneData& scene, const DeviceFlags& flags)
+{
+    const std::string& folder = flags.options.use_generated;
+    if (folder.empty()) return;
+    std::ranges::move(notices_of_generated(scene, folder, flags.backend),
+                      std::back_inserter(scene.notices));
 }
 
 BackendOptions options_from_flags(const DeviceFlags& flags)

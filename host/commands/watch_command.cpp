@@ -150,7 +150,9 @@ int run_watch_command(const WatchCommand& command)
     const auto load = [&](const std::vector<std::string>& values) {
         SceneFlags flags = run.scene;
         flags.load.texture_values = values;
-        return load_from_flags(flags, is_adaptive(aims));
+        SceneData scene = load_from_flags(flags, is_adaptive(aims));
+        add_generated_notices(scene, run.device);
+        return scene;
     };
     LiveScene scene(run.scene.scene, other_files(run.scene), run.scene.load.texture_values, load);
     const auto make = [&] {

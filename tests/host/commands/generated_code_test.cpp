@@ -89,6 +89,38 @@ TEST_P(GeneratedCode, OtherTexturesAreRefused)
     EXPECT_EQ(refused.err_lines().size(), 1u) << refused.err;
 }
 
+// It runs on as it was edited, but not without a word.
+TEST_P(GeneratedCode, ACopyOlderThanAnEditOfTheTextureIsNamed)
+{
+    if (!is_usable()) GTEST_SKIP() << "no OpenCL device";
+    const auto notices = [&](const std::vector<std::string>& flags, const std::string& picture) {
+        std::vector<std::string> words = {"--json", folder_ / "report.json"};
+        words.insert(words.end(), flags.begin(), flags.end());
+        const Outcome outcome = render(words, picture);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        std::ifstream in(folder_ / "report.json");
+        return nlohmann::json::parse(in).at("notices").get<std::vector<std::string>>();
+    };
+    const std::vector<std::string> sky = {"lights: none in the scene; a neutral sky lights it"};
+    const std::string code = folder_ / "code";
+    EXPECT_EQ(notices({"--generated-dir", code}, "a.exr"), sky);
+    EXPECT_EQ(notices({"--use-generated", code}, "b.exr"), sky);
+    std::string source = painted_source;
+    source.replace(source.find("0.25f"), 5, "0.5f");
+    folder_.write("paint.c", source);
+    EXPECT_EQ(
+        notices({"--use-generated", code}, "c.exr"),
+        (std::vector<std::string>{
+            sky[0], "--use-generated: " + (folder_ / file()) + ": made before the last edit of " +
+                        (folder_ / "paint.c") +
+                        ", and runs as it is; for that edit write it anew with --generated-dir"}));
+    EXPECT_EQ(pixels("a.exr"), pixels("c.exr"));
+    EXPECT_EQ(notices({"--generated-dir", code}, "d.exr"), sky);
+    EXPECT_EQ(notices({"--use-generated", code}, "e.exr"), sky);
+    EXPECT_EQ(pixels("d.exr"), pixels("e.exr"));
+    EXPECT_NE(pixels("a.exr"), pixels("e.exr"));
+}
+
 // By the lines of the copy, where the error is to be mended; not by those of the user's file.
 TEST_P(GeneratedCode, AnErrorInAnEditedCopyNamesItsLine)
 {
