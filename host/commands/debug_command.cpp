@@ -1,7 +1,9 @@
 #include "host/commands/debug_command.hpp"
 
+#include "backends/textures/scratch_folder.hpp"
 #include "backends/textures/subprocess.hpp"
 #include "common/as_cpp/path_rows.hpp"
+#include "host/commands/launch_file.hpp"
 #include "host/commands/render_command.hpp"
 #include "host/commands/texture_capture.hpp"
 
@@ -189,27 +191,17 @@ json launch_configuration(const DebugCommand& command, const DebugStop& stop,
 // Adds the configuration to the folder's launch file, in the place of an earlier one of that name.
 void write_launch_file(const json& configuration)
 {
-    json launch = {{"version", "0.2.0"}, {"configurations", json::array()}};
-    if (fs::exists(launch_file)) {
-        std::ifstream in(launch_file);
-        launch = json::parse(in, nullptr, false);
-        if (!launch.is_object() || !launch.contains("configurations") ||
-            !launch["configurations"].is_array())
-            throw std::runtime_error(
-                std::string(launch_file) +
-                ": not JSON without comments; move it away, or add the configuration by hand:\n" +
-                configuration.dump(2));
+    if (fs::exists(launch_file) && !std::ifstream(launch_file))
+        throw std::runtime_error(std::string(launch_file) +
+                                 ": cannot be read; change its permissions, or move it away");
+    std::string text;
+    try {
+        text = with_configuration(text_of(launch_file), configuration);
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(std::string(launch_file) + ": " + error.what());
     }
-    json& all = launch["configurations"];
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [&](const json& other) {
-                                 return other.is_object() &&
-                                        other.value("name", "") == configuration.value("name", "");
-                             }),
-              all.end());
-    all.push_back(configuration);
     fs::create_directories(fs::path(launch_file).parent_path());
-    image::write_file_whole(launch_file, launch.dump(2) + "\n");
+    image::write_file_whole(launch_file, text);
     fmt::print("wrote {}\n", launch_file);
 }
 

@@ -246,6 +246,56 @@ TEST_F(DebugTexture, PrintsTheCommandAndWritesALaunchFile)
     EXPECT_EQ(configuration.at("args").at(0), "render");
 }
 
+// As VS Code itself begins the file, and as people go on with it.
+TEST_F(DebugTexture, ALaunchFileKeepsWhatPeopleWroteInIt)
+{
+    const std::string head = "{\n    // Use IntelliSense, see \"configurations\": [ of {\n"
+                             "    \"inputs\": [{\"id\": \"configurations\"}], /* [ */\n"
+                             "    \"configurations\": [ // all\n"
+                             "        {\"name\": \"a // b\", \"args\": [\"\\\"]\"]}";
+    const std::string tail = ", // the last, so far\n    ],\n    \"version\": \"0.2.0\",\n}\n";
+    std::filesystem::create_directory(folder_ / ".vscode");
+    folder_.write(".vscode/launch.json", head + tail);
+    const auto write = [&](const std::string& line) {
+        return debug({"--pixel", "12,8", "--texture", "paint", "--line", line, "--vscode"});
+    };
+    const auto text = [&] {
+        std::ifstream in(folder_ / ".vscode/launch.json");
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    for (const std::string line : {"4", "5"}) {  // the second takes the place of the first
+        const Outcome written = write(line);
+        ASSERT_EQ(written.exit_code, 0) << written.text();
+        ASSERT_TRUE(text().starts_with(head + ",\n        {")) << text();
+        ASSERT_TRUE(text().ends_with("}" + tail)) << text();
+        const std::string added =
+            text().substr(head.size() + 1, text().size() - head.size() - tail.size() - 1);
+        const nlohmann::json configuration = nlohmann::json::parse(added, nullptr, false);
+        ASSERT_TRUE(configuration.is_object()) << text();
+        EXPECT_EQ(configuration.at("name"), "diptych: paint at 12,8");
+        EXPECT_NE(configuration.at("setupCommands").dump().find("paint.c:" + line),
+                  std::string::npos)
+            << added;
+    }
+    std::string commented = text();
+    commented.insert(commented.find("cppdbg"), "gdb\", // mine\n\"type\": \"");
+    folder_.write(".vscode/launch.json", commented);
+    const Outcome kept = write("4");
+    EXPECT_EQ(kept.exit_code, 2) << kept.text();
+    EXPECT_EQ(kept.err, "diptych: .vscode/launch.json: there are comments in its configuration "
+                        "\"diptych: paint at 12,8\", which would be lost; give it another name\n");
+    EXPECT_EQ(text(), commented);
+    for (const char* wrong : {"{\"configurations\": {}}", "{\"configurations\": [}", "[] //",
+                              "{\"\\u0063onfigurations\": []}"}) {
+        folder_.write(".vscode/launch.json", wrong);
+        const Outcome refused = write("4");
+        EXPECT_EQ(refused.exit_code, 2) << refused.text();
+        EXPECT_EQ(refused.err, "diptych: .vscode/launch.json: is not JSON with a list of "
+                               "configurations, comments aside; repair it, or move it away\n");
+        EXPECT_EQ(text(), wrong);
+    }
+}
+
 TEST_F(DebugTexture, SaysWhyItCannotStop)
 {
     const auto expect_refusal = [&](const std::vector<std::string>& more,
