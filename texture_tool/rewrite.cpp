@@ -73,7 +73,7 @@ public:
         if (variant_ == Variant::WatchedValues) result.text += watch_text;
         if (variant_ == Variant::WatchedIndexes) result.text += watch_index_text;
         result.text +=
-            with_line_marks(text_.file()) + "\n#line 1 \"<generated for " + id_ + ">\"\n" + entry();
+            with_line_marks(text_.file()) + "\n#line 1 \"<generated: " + id_ + ">\"\n" + entry();
         if (is_cpp_) result.text += "}  // namespace " + id_ + "\n";
         result.changed_lines = text_.count_changed_lines();
         result.total_lines = static_cast<int>(std::count(description_.source.begin(),

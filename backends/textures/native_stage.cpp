@@ -276,7 +276,7 @@ void compile(const std::string& program, const Source& source, const fs::path& r
              const fs::path& object)
 {
     const fs::path functions = object.parent_path() / "functions.hpp";
-    write_text(functions, source.functions);
+    write_text(functions, with_generated_lines_of(source.functions, functions));
     std::vector<std::string> command = {program};
     command.insert(command.end(), source.flags.begin(), source.flags.end());
     command.insert(command.end(),

@@ -76,19 +76,28 @@ std::string texts_line(const SceneData& scene)
     return line + "\n";
 }
 
-// The text without its #line directives, as lines of this file.
-std::string as_lines_of(const std::filesystem::path& file, const std::string& text)
+// For the line behind it.
+std::string line_directive(size_t line, const std::filesystem::path& file)
 {
     std::string name;
     for (const char c : file.string()) {
         if (c == '"' || c == '\\') name += '\\';
         name += static_cast<unsigned char>(c) < 32 ? '_' : c;
     }
-    std::string result = "#line 1 \"" + name + "\"\n";
+    return "#line " + std::to_string(line) + " \"" + name + "\"\n";
+}
+
+// The text with another line in place of each that begins so: replaced(number of the line).
+template<class Replaced>
+std::string with_lines(const std::string& text, const std::string& beginning, Replaced replaced)
+{
+    std::string result;
+    size_t number = 0;
     for (size_t at = 0; at < text.size();) {
         const size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
         const std::string line = text.substr(at, end - at);
-        result += line.starts_with("#line ") ? "\n" : line;
+        ++number;
+        result += line.starts_with(beginning) ? replaced(number) : line;
         at = end;
     }
     return result;
@@ -123,7 +132,8 @@ std::string through_folders(const std::string& text, const std::string& name,
             ": its first line does not name the textures of this scene and what they take; write "
             "it anew with --generated-dir " +
             folders.use + ", and keep that line");
-    return folders.has_own_lines ? as_lines_of(file, own) : own;
+    if (!folders.has_own_lines) return own;
+    return line_directive(1, file) + with_lines(own, "#line ", [](size_t) { return "\n"; });
 }
 
 }  // namespace
@@ -144,6 +154,13 @@ CppTextures cpp_textures(const SceneData& scene, const GeneratedFolders& folders
                                                        context_definitions(scene) + effects
                                                  : textures.all);
     return textures;
+}
+
+std::string with_generated_lines_of(const std::string& text, const std::filesystem::path& file)
+{
+    return with_lines(text, "#line 1 \"<generated: ", [&](size_t number) {
+        return line_directive(number + 1, file);
+    });
 }
 
 std::vector<std::string> notices_of_generated(const SceneData& scene, const std::string& folder,

@@ -4,6 +4,7 @@
 
 #include "backends/scene_data.hpp"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct CppTextures {
 // In C++. Throws std::runtime_error when a folder cannot be written, or lacks the file, or holds
 // that of other textures.
 CppTextures cpp_textures(const SceneData& scene, const GeneratedFolders& folders = {});
+
+// The text with the lines that are no user's named as those of this file, which is to hold it.
+std::string with_generated_lines_of(const std::string& text, const std::filesystem::path& file);
 
 // About the code in the folder that this backend (its name) runs: a line for each user's file that
 // was edited since the code was made of it.

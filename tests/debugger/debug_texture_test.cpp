@@ -180,6 +180,27 @@ TEST_F(DebugTexture, StopsInFilesOfAnyName)
     EXPECT_NE(refused.err.find("it's a.c: gdb cannot be told"), std::string::npos) << refused.err;
 }
 
+// What calls the texture is no file of the user's, but debuggers find it.
+TEST_F(DebugTexture, TheCallerOfATextureIsShownToo)
+{
+    std::string left_out;
+    int shown = 0;
+    for (const std::string debugger : {"gdb", "lldb"}) {
+        if (const std::string why = why_no_debugger(debugger); !why.empty()) {
+            left_out += why + "; ";
+            continue;
+        }
+        ++shown;
+        const Outcome outcome =
+            debug({"--pixel", "12,8", "--texture", "paint", "--debugger", debugger}, {"finish"});
+        EXPECT_NE(outcome.out.find("return tx_result_of_float4(userProc("), std::string::npos)
+            << outcome.text();
+        EXPECT_NE(outcome.out.find("functions.hpp:"), std::string::npos) << outcome.text();
+        EXPECT_EQ(outcome.text().find("No such file"), std::string::npos) << outcome.text();
+    }
+    if (shown == 0) GTEST_SKIP() << left_out;
+}
+
 TEST_F(DebugTexture, GdbStepsFromLineToLineAndIntoTheTexturesOwnFunctions)
 {
     if (const std::string why = why_no_debugger("gdb"); !why.empty()) GTEST_SKIP() << why;
