@@ -148,6 +148,8 @@ std::vector<Device> all_devices()
     return devices;
 }
 
+std::string Program::log() const { return build_log(program_.get(), device_); }
+
 std::string Program::binary() const
 {
     size_t bytes = 0;

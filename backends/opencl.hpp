@@ -90,6 +90,7 @@ private:
 class Program {
 public:
     std::string binary() const;
+    std::string log() const;  // what the device's compiler said
 
 private:
     friend class Context;

@@ -134,6 +134,18 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
     return set;
 }
 
+std::optional<std::string>
+verbose_texture_log(const DeviceInfo& device, const BackendOptions& options, const SceneData& scene)
+{
+    if (device.device.text(CL_DEVICE_VENDOR).find("NVIDIA") == std::string::npos)
+        return std::nullopt;
+    const Stage stage = STAGE_evaluate_textures;
+    return opencl::Context(device.device)
+        .build(source_for(stage, options, scene),
+               program_options(device, options, scene) + " -cl-nv-verbose", stage_names[stage])
+        .log();
+}
+
 opencl::Program build_texture_program(const opencl::Context& context, const DeviceInfo& device,
                                       const BackendOptions& options, const SceneData& scene,
                                       ProgramCache& cache)

@@ -27,6 +27,12 @@ ProgramSet build_programs(const opencl::Context& context, const DeviceInfo& devi
                           const BackendOptions& options, const SceneData& scene,
                           ProgramCache& cache);
 
+// What an NVIDIA device's compiler says of the texture stage's program, which is compiled for that
+// alone; none: another maker's device. Throws with the log of an error.
+std::optional<std::string> verbose_texture_log(const DeviceInfo& device,
+                                               const BackendOptions& options,
+                                               const SceneData& scene);
+
 // That of the texture stage alone.
 opencl::Program build_texture_program(const opencl::Context& context, const DeviceInfo& device,
                                       const BackendOptions& options, const SceneData& scene,

@@ -209,16 +209,20 @@ std::string cost_card(const TextureFile& file, const std::vector<std::string>& v
                             timing.nanoseconds, timing.stage_nanoseconds, timing.ray_nanoseconds,
                             difference_text(timing));
     }
-    text += fmt::format("\nthe texture stage as compilers for GPUs see it\n{:<8} {:>12} {:>16} "
-                        "{:>16} {:>12}\n",
-                        "target", "registers", "stack bytes", "spilled bytes", "code bytes");
     SceneData scene = scene_of(file, values);
-    for (const DeviceCost& cost : device_costs(scene).free) {
+    std::vector<DeviceCost> costs = device_costs(scene).free;
+    if (const auto cost = driver_cost(scene, options)) costs.push_back(*cost);
+    size_t width = 8;
+    for (const DeviceCost& cost : costs) width = std::max(width, cost.target.size());
+    text += fmt::format("\nthe texture stage as compilers for GPUs see it\n{:<{}} {:>12} {:>16} "
+                        "{:>16} {:>12}\n",
+                        "target", width, "registers", "stack bytes", "spilled bytes", "code bytes");
+    for (const DeviceCost& cost : costs) {
         if (!cost.missing.empty())
-            text += fmt::format("{:<8} not measured: {}\n", cost.target, cost.missing);
+            text += fmt::format("{:<{}} not measured: {}\n", cost.target, width, cost.missing);
         else
-            text += fmt::format("{:<8} {:>12} {:>16} {:>16} {:>12}\n", cost.target, cost.registers,
-                                cost.stack_bytes, cost.spill_bytes,
+            text += fmt::format("{:<{}} {:>12} {:>16} {:>16} {:>12}\n", cost.target, width,
+                                cost.registers, cost.stack_bytes, cost.spill_bytes,
                                 cost.code_bytes > 0 ? std::to_string(cost.code_bytes) : "-");
     }
     return text;

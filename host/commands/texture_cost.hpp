@@ -4,6 +4,8 @@
 #include "backends/backend.hpp"
 #include "host/commands/texture_file.hpp"
 
+#include <optional>
+
 namespace diptych {
 
 // Of one backend.
@@ -44,6 +46,11 @@ struct DeviceCosts {
     std::vector<DeviceCost> limited;
 };
 DeviceCosts device_costs(const SceneData& scene, int most_registers = 0);
+
+// By what ptxas -v prints, and NVIDIA's OpenCL with -cl-nv-verbose: the most that a function takes.
+DeviceCost ptxas_cost(const std::string& target, const std::string& log);
+// The same for the OpenCL device in use, from its own compiler; none: it is not one of NVIDIA's.
+std::optional<DeviceCost> driver_cost(const SceneData& scene, const BackendOptions& options);
 
 // All of it as text. `backends`: names with commas, or empty for all.
 std::string cost_card(const TextureFile& file, const std::vector<std::string>& values,

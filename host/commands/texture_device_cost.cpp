@@ -6,6 +6,7 @@
 #ifdef DIPTYCH_WITH_OPENCL
 
 #include "backends/kernel_sources.hpp"
+#include "backends/opencl_programs.hpp"
 #include "backends/textures/scratch_folder.hpp"
 #include "backends/textures/subprocess.hpp"
 #include "backends/textures/texture_source.hpp"
@@ -121,22 +122,17 @@ double seconds_since(std::chrono::steady_clock::time_point start)
 DeviceCost assembled(const std::string& assembler, const std::string& ptx, const std::string& limit,
                      const ScratchFolder& folder)
 {
-    DeviceCost cost;
-    cost.target = "sm_80";
     const std::string cubin = folder / "kernel.cubin";
     std::vector<std::string> command = {assembler, "-v", "-arch=sm_80", ptx, "-o", cubin};
     if (!limit.empty()) command.push_back(limit);
     const auto start = std::chrono::steady_clock::now();
     const Finished done = run_program(command);
+    DeviceCost cost = ptxas_cost("sm_80", done.output);
     cost.seconds = seconds_since(start);
-    if (done.exit_code != 0) {
+    if (done.exit_code != 0)
         cost.missing = "ptxas: " + first_line(done.output);
-        return cost;
-    }
-    cost.registers = largest(done.output, "Used (\\d+) registers");
-    cost.stack_bytes = largest(done.output, "(\\d+) bytes stack frame");
-    cost.spill_bytes = largest(done.output, "(\\d+) bytes spill stores");
-    cost.code_bytes = code_bytes(text_of(cubin));
+    else
+        cost.code_bytes = code_bytes(text_of(cubin));
     return cost;
 }
 
@@ -209,6 +205,35 @@ DeviceCost amd(const std::string& source, unsigned effects, const ScratchFolder&
 
 }  // namespace
 
+DeviceCost ptxas_cost(const std::string& target, const std::string& log)
+{
+    DeviceCost cost;
+    cost.target = target;
+    cost.registers = largest(log, "Used (\\d+) registers");
+    cost.stack_bytes = largest(log, "(\\d+) bytes stack frame");
+    cost.spill_bytes = largest(log, "(\\d+) bytes spill stores");
+    if (cost.registers == 0) cost.missing = "the compiler says nothing of registers";
+    return cost;
+}
+
+std::optional<DeviceCost> driver_cost(const SceneData& scene, const BackendOptions& options)
+{
+    DeviceCost cost;
+    try {
+        const DeviceInfo device = pick_opencl_device(options.device);
+        cost.target = device.name;
+        const auto log = verbose_texture_log(device, options, scene);
+        if (!log) return std::nullopt;
+        cost = ptxas_cost(device.name, *log);
+        if (!cost.missing.empty())  // the driver's own cache keeps programs without their logs
+            cost.missing += "; set CUDA_CACHE_DISABLE=1 and try again";
+    } catch (const std::runtime_error& error) {
+        if (cost.target.empty()) return std::nullopt;
+        cost.missing = first_line(error.what());
+    }
+    return cost;
+}
+
 DeviceCosts device_costs(const SceneData& scene, int most_registers)
 {
     const ScratchFolder folder;
@@ -234,6 +259,7 @@ DeviceCosts device_costs(const SceneData& scene, int most_registers)
 namespace diptych {
 
 DeviceCosts device_costs(const SceneData&, int) { return {}; }
+std::optional<DeviceCost> driver_cost(const SceneData&, const BackendOptions&) { return {}; }
 
 }  // namespace diptych
 
