@@ -1,6 +1,7 @@
 #include "host/scene/alias_table.hpp"
 #include "host/scene/scene_builder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
