@@ -113,6 +113,10 @@ typedef struct {
     int reserved;
 } Material;
 
+// Where texture_program lies in a material, and how long a material is, in words.
+#define MATERIAL_PROGRAM_WORD 25
+#define MATERIAL_WORDS 32
+
 // In place of a texture slot: the texture stage has computed what the material reads there.
 #define TEXTURE_PROCEDURAL (-2)
 

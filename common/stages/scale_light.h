@@ -14,7 +14,8 @@ SHARED void record_light(const Scene* scene, const Paths* paths, int i, int ligh
     const int program = scene->materials[ROW_AT(scene, triangles, triangle).material]
                             .texture_program[PROGRAM_EMISSION];
     const int is_asked = is_triangle & (program != 0) & (vec_max_component(contribution) > 0.0f);
-    set_record_triangle(paths, 0, i, is_asked ? triangle : -1);
+    // the triangle, or -1: bits, not a select, for which g++ 14 branches and leaves lanes
+    set_record_triangle(paths, 0, i, triangle | (is_asked - 1));
     set_record_instance(paths, 0, i, instance);
 }
 

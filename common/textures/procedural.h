@@ -102,8 +102,10 @@ SHARED int texture_program_of(const Scene* scene, const Paths* paths, int i)
     const int which = texture_program_asked(paths->lookup);
     const int hit = get_hit_triangle(paths, i);
     const int triangle = hit < 0 ? 0 : hit;
-    const int program =
-        scene->materials[ROW_AT(scene, triangles, triangle).material].texture_program[which];
+    const int material = ROW_AT(scene, triangles, triangle).material;
+    // the word, not texture_program[which], which g++ 14 does not gather for lanes
+    const int place = material * MATERIAL_WORDS + MATERIAL_PROGRAM_WORD + which;
+    const int program = (int)material_word(scene, place);
     const int depth = get_depth(paths, i);
     const int is_later = (LOOKUP_PLACE(paths->lookup) == LOOKUP_AOV) & (depth > 0);
     const int is_dead = (hit < 0) | (depth < 0) | is_later;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <fmt/format.h>
 #include <limits>
@@ -19,6 +20,8 @@ namespace {
 
 constexpr size_t page_words = sizeof(Material) / sizeof(uint);
 constexpr int request_words = 4;
+static_assert(sizeof(Material) == MATERIAL_WORDS * sizeof(uint));
+static_assert(offsetof(Material, texture_program) == MATERIAL_PROGRAM_WORD * sizeof(uint));
 
 // The words of the materials' buffer behind the materials, page by page.
 class Pages {
