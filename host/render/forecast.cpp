@@ -55,7 +55,7 @@ double Forecast::fraction(const Schedule& schedule, int target, int plan_length,
     }
     if (needed.empty()) return 1;
     // Blocks beyond the share go on until the last one within it is done.
-    const auto last = needed.begin() + std::ptrdiff_t(std::ceil(share * double(needed.size()))) - 1;
+    const auto last = needed.begin() + std::ptrdiff_t(share_of(share, needed.size())) - 1;
     std::nth_element(needed.begin(), last, needed.end());
     const double most = *last;
     double all = 0, there = 0;

@@ -100,9 +100,8 @@ private:
         const std::vector<BlockError> errors = block_errors(result.film, grid_, options_.viewer);
         for (const BlockError& error : errors)
             result.unfinished_blocks += error_of(error) > target();
-        const double within = 1 - double(result.unfinished_blocks) / double(errors.size());
-        const bool is_reached =
-            is_complete && (result.unfinished_blocks == 0 || within >= options_.share);
+        const size_t finished = errors.size() - size_t(result.unfinished_blocks);
+        const bool is_reached = is_complete && finished >= share_of(options_.share, errors.size());
         result.ending = is_reached       ? Ending::TargetReached
                         : is_complete    ? Ending::SamplesDone
                         : is_time_over() ? Ending::TimeOver

@@ -10,6 +10,11 @@ namespace diptych {
 
 int error_of(const BlockError& error) { return std::max(error.rms, (error.worst_pixel + 3) / 4); }
 
+size_t share_of(double share, size_t blocks)
+{
+    return size_t(std::ceil(share * double(blocks) - 1e-6));
+}
+
 std::vector<Quantum> quanta_of(int first, int end)
 {
     std::vector<Quantum> quanta;
@@ -211,7 +216,7 @@ ShareNeeds needs_of_share(const Schedule& schedule, std::span<const Quantum> pla
         below += is_below ? 1 : 0;
         quanta.push_back(is_below ? 0 : samples_needed(samples, error, targets.error) / QUANTUM);
     }
-    const size_t wanted = size_t(std::ceil(targets.share * double(quanta.size())));
+    const size_t wanted = share_of(targets.share, quanta.size());
     std::nth_element(quanta.begin(), quanta.begin() + std::ptrdiff_t(wanted) - 1, quanta.end());
     needs.is_there = below >= wanted;
     needs.quanta = std::ceil(std::max(quanta[wanted - 1], double(least) / QUANTUM));

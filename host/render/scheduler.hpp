@@ -102,6 +102,9 @@ struct Targets {
     double share = 1;  // of the blocks, below 1: when so many are below the error, all end
 };
 
+// How many of the blocks a share of them is, rounded up.
+size_t share_of(double share, size_t blocks);
+
 // The next round of the team whose turn it is, whose errors have been measured; the turn goes on.
 // Each block that is not done gets as many quanta as its error asks for, at most as many as it has.
 // A block is done when its error is at most the target, that of each of its pixels at most four

@@ -177,6 +177,14 @@ TEST(Scheduler, UnbiasedRendersDecideOnceByAPilot)
     EXPECT_FALSE(begin_adaptive_round(schedule, grid, plan, targets));
 }
 
+TEST(Scheduler, SharesAreRoundedUpButNotByRoundingErrors)
+{
+    EXPECT_EQ(share_of(1, 7), 7u);
+    EXPECT_EQ(share_of(0.55, 100), 55u);  // 55.00000000000001
+    EXPECT_EQ(share_of(0.95, 84), 80u);   // of 79.8
+    EXPECT_EQ(share_of(0.01, 3), 1u);
+}
+
 TEST(Scheduler, AShareBelowTheTargetEndsAllAndHardBlocksDoNotRunAhead)
 {
     const BlockGrid grid = grid_of_blocks(16 * 4, 16);
