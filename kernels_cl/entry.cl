@@ -18,11 +18,11 @@
 #define RUN_once(stage, k) stage(&scene, &paths, k)
 #define RUN_each_bounce(stage, k) stage(&scene, &paths, is_compacted ? live[k] : k)
 #define RUN_each_layer(stage, k) RUN_each_bounce(stage, k)
-#define RUN_each_surface_(stage, k)                              \
-    const int slot = is_compacted ? live[k] : k;                 \
-    if (get_hit_triangle(&paths, slot) >= 0)                     \
-        stage(&scene, &paths, slot);                             \
-    else                                                         \
+#define RUN_each_surface_(stage, k)              \
+    const int slot = is_compacted ? live[k] : k; \
+    if (get_hit_triangle(&paths, slot) >= 0)     \
+        stage(&scene, &paths, slot);             \
+    else                                         \
         stage##_missed(&scene, &paths, slot)
 #define RUN_each_surface(stage, k) RUN_each_surface_(stage, k)
 #define RUN_first_bounce(stage, k)               \

@@ -9,6 +9,7 @@
 
 SHARED void sample_light_missed(const Scene* scene, const Paths* paths, int i)
 {
+    (void)scene;  // where effects are constants
     set_light_contribution(paths, i, make_float3(0.0f, 0.0f, 0.0f));
     if (uses(scene, EFFECT_PROCEDURAL_EMISSION)) set_record_triangle(paths, 0, i, -1);
 }
