@@ -36,6 +36,20 @@ std::string why_no_debugger(const std::string& debugger)
     return "";
 }
 
+// Those that can be used here; why: of the others.
+std::vector<std::string> debuggers(std::string& why)
+{
+    std::vector<std::string> usable;
+    for (const std::string debugger : {"gdb", "lldb"}) {
+        const std::string reason = why_no_debugger(debugger);
+        if (reason.empty())
+            usable.push_back(debugger);
+        else
+            why += reason + "; ";
+    }
+    return usable;
+}
+
 class DebugTexture : public testing::Test {
 protected:
     void SetUp() override { write_painted_scene(folder_); }
@@ -117,13 +131,9 @@ TEST_F(DebugTexture, GdbStopsAtALineOfTheFileWithTheValuesOfThePicture)
 TEST_F(DebugTexture, StepStaysAmongTheUsersLines)
 {
     std::string left_out;
-    int stepped = 0;
-    for (const std::string debugger : {"gdb", "lldb"}) {
-        if (const std::string why = why_no_debugger(debugger); !why.empty()) {
-            left_out += why + "; ";
-            continue;
-        }
-        ++stepped;
+    const std::vector<std::string> usable = debuggers(left_out);
+    if (usable.empty()) GTEST_SKIP() << left_out;
+    for (const std::string& debugger : usable) {
         const Outcome outcome =
             debug({"--pixel", "12,8", "--texture", "paint", "--debugger", debugger},
                   {"step", "step", "step", "step"});
@@ -131,7 +141,6 @@ TEST_F(DebugTexture, StepStaysAmongTheUsersLines)
         EXPECT_NE(outcome.out.find("paint.c:" + at_line("sin(p.x")), std::string::npos)
             << outcome.text();
     }
-    if (stepped == 0) GTEST_SKIP() << left_out;
 }
 
 // Two nodes call one function: the arguments tell which it is.
@@ -184,13 +193,9 @@ TEST_F(DebugTexture, StopsInFilesOfAnyName)
 TEST_F(DebugTexture, TheCallerOfATextureIsShownToo)
 {
     std::string left_out;
-    int shown = 0;
-    for (const std::string debugger : {"gdb", "lldb"}) {
-        if (const std::string why = why_no_debugger(debugger); !why.empty()) {
-            left_out += why + "; ";
-            continue;
-        }
-        ++shown;
+    const std::vector<std::string> usable = debuggers(left_out);
+    if (usable.empty()) GTEST_SKIP() << left_out;
+    for (const std::string& debugger : usable) {
         const Outcome outcome =
             debug({"--pixel", "12,8", "--texture", "paint", "--debugger", debugger}, {"finish"});
         EXPECT_NE(outcome.out.find("return tx_result_of_float4(userProc("), std::string::npos)
@@ -198,7 +203,6 @@ TEST_F(DebugTexture, TheCallerOfATextureIsShownToo)
         EXPECT_NE(outcome.out.find("functions.hpp:"), std::string::npos) << outcome.text();
         EXPECT_EQ(outcome.text().find("No such file"), std::string::npos) << outcome.text();
     }
-    if (shown == 0) GTEST_SKIP() << left_out;
 }
 
 TEST_F(DebugTexture, GdbStepsFromLineToLineAndIntoTheTexturesOwnFunctions)

@@ -13,8 +13,8 @@ using namespace diptych;
 
 class Missed : public laws::OnEachBackend {};
 
-// busy_scene from so far that most rays of the camera, and of those that scatter, leave it.
-SceneData far_scene()
+// busy_scene in so wide a view that most rays of the camera, and many that scatter, leave it.
+SceneData wide_scene()
 {
     SceneData scene = laws::busy_scene(32, 32);
     Settings& settings = scene.settings[0];
@@ -29,7 +29,7 @@ SceneData far_scene()
 
 TEST_P(Missed, PathsBringWhatTheyDoStageByStage)
 {
-    SceneData scene = far_scene();
+    SceneData scene = wide_scene();
     backend_->upload(scene);
     const std::vector<WorkItem> items{{0, 0, 0, 0}, {16, 0, 0, 0}, {0, 16, 0, 0}, {16, 16, 0, 0}};
     const Dispatch dispatch{items, 8};
