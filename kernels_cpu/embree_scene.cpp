@@ -66,15 +66,13 @@ PacketContext context_of(const Views& views, const std::vector<int>& first_trian
 RTCRayHit query_of(const float* origin, const float* direction, int n, int i, float nearest,
                    float farthest)
 {
+    // as vectors: Embree reads them as such, and would wait for single stores
+    using Quad __attribute__((vector_size(16))) = float;
+    const Quad from{origin[i], origin[n + i], origin[2 * n + i], nearest};
+    const Quad along{direction[i], direction[n + i], direction[2 * n + i], 0.0f};
     RTCRayHit query;
-    query.ray.org_x = origin[i];
-    query.ray.org_y = origin[n + i];
-    query.ray.org_z = origin[2 * n + i];
-    query.ray.tnear = nearest;
-    query.ray.dir_x = direction[i];
-    query.ray.dir_y = direction[n + i];
-    query.ray.dir_z = direction[2 * n + i];
-    query.ray.time = 0.0f;
+    std::memcpy(&query.ray.org_x, &from, sizeof from);    // and tnear
+    std::memcpy(&query.ray.dir_x, &along, sizeof along);  // and time
     query.ray.tfar = farthest;
     query.ray.mask = ~0u;
     query.ray.id = 0;
