@@ -294,9 +294,13 @@ void narrow(std::vector<To>& out, const void* plane, size_t count, bool is_doubl
 void CpuBackend::render(const Dispatch& dispatch, Results& results)
 {
     const PathView view = view_results(dispatch);
-    parallel_for(threads_, int(dispatch.items.size()), [&](int k) {
+    const int items = int(dispatch.items.size());
+    const int at_once = std::clamp(items / (4 * threads_), 1,
+                                   Chunk::items_at_once(dispatch.samples, dispatch.pixel_shift));
+    parallel_for(threads_, (items + at_once - 1) / at_once, [&](int k) {
         std::unique_ptr<Chunk> chunk = borrow_chunk();
-        chunk->run(view, k << dispatch.pixel_shift, &dispatch.items[size_t(k)]);
+        const int first = k * at_once;
+        chunk->run(view, first, std::min(at_once, items - first));
         return_chunk(std::move(chunk));
     });
     int row = 0;

@@ -15,9 +15,10 @@ constexpr int padding = 16;
 constexpr int capacity = chunk_paths + padding;
 constexpr int packet = 16;  // paths that Embree takes at once, at most
 
-// Compaction costs about as much as a stage on a tenth of the paths; after it, dead ones would run
-// through all stages of the next bounces, those that have only missed through three of this one.
-bool is_worth_compacting(int live, int count) { return live <= count - count / 8; }
+// Compaction costs about as much as a stage on a tenth of the paths; without it, dead ones would
+// run through all stages of the next bounces, those that have only missed through three of this
+// one.
+bool is_worth_compacting(int live, int count) { return live <= count - count / 16; }
 bool is_worth_parting(int met, int count) { return met <= count - count / 4; }
 
 void add_range(std::vector<PathRange>& ranges, int first, int count)
@@ -83,44 +84,46 @@ Chunk::Chunk(const KernelSet& kernels, const EmbreeScene* embree, const SceneVie
     records_ = RecordViews(view_);
 }
 
-void Chunk::run(const PathView& results, int first_result, const void* item)
+void Chunk::run(const PathView& results, int first_item, int items)
 {
     const int shift = results.pixel_shift;
+    const size_t first_result = size_t(first_item) << shift;
     const int at_once = std::min(results.samples, chunk_paths >> shift);
     std::vector<void*> result_planes;
     int row = 0;
 #define OFFSET_RESULT(type, name)                                              \
     result_planes.push_back(static_cast<char*>(results.result_planes[row++]) + \
-                            size_t(first_result) *                             \
-                                (#type[0] == 'f' ? kernels_.real_bytes : sizeof(int)));
+                            first_result * (#type[0] == 'f' ? kernels_.real_bytes : sizeof(int)));
     RESULT_BUFFERS(OFFSET_RESULT)
 #undef OFFSET_RESULT
     std::vector<void*> texture_result_planes;
     row = 0;
 #define OFFSET_RESULT(type, name)                                                              \
     texture_result_planes.push_back(static_cast<char*>(results.texture_result_planes[row++]) + \
-                                    size_t(first_result) *                                     \
+                                    first_result *                                             \
                                         (#type[0] == 'f' ? kernels_.real_bytes : sizeof(int)));
     TEXTURE_RESULT_BUFFERS(OFFSET_RESULT)
 #undef OFFSET_RESULT
+    const WorkItem* first_part = static_cast<const WorkItem*>(results.items) + first_item;
+    std::vector<WorkItem> parts(first_part, first_part + items);
     for (int first = 0; first < results.samples; first += at_once) {
-        WorkItem part = *static_cast<const WorkItem*>(item);
-        part.first_sample += first;
         view_.results = results.results;
         view_.samples = at_once;
         view_.pixel_shift = shift;
-        view_.items = &part;
+        view_.items = parts.data();
         view_.result_planes = result_planes.data();
         view_.texture_result_planes = texture_result_planes.data();
-        const int count = at_once << shift;
+        const int count = (items * at_once) << shift;
         trace_paths(count);
         view_.planes = retired_planes_.data();
         for (view_.turn = 0; view_.turn < at_once; ++view_.turn) {
-            run_stage(STAGE_accumulate, 1 << shift);
-            if (scene_.effects & EFFECT_TEXTURE_AOV) run_stage(STAGE_accumulate_aovs, 1 << shift);
+            run_stage(STAGE_accumulate, items << shift);
+            if (scene_.effects & EFFECT_TEXTURE_AOV)
+                run_stage(STAGE_accumulate_aovs, items << shift);
         }
         view_.planes = planes_.data();
         paths += std::uint64_t(count);
+        for (WorkItem& part : parts) part.first_sample += at_once;
     }
 }
 

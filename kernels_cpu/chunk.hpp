@@ -1,5 +1,6 @@
-// Runs the whole row list for a few hundred paths at a time, so that their state stays in the
-// second-level cache.
+// Runs the whole row list for about two thousand paths at a time: few enough for their state to
+// stay in the second-level cache, enough that packets have few empty lanes when most paths have
+// ended.
 #pragma once
 
 #include "common/as_cpp/path_rows.hpp"
@@ -7,6 +8,7 @@
 #include "kernels_cpu/kernels.hpp"
 #include "kernels_cpu/record_view.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -14,7 +16,7 @@
 
 namespace diptych {
 
-inline constexpr int chunk_paths = 1024;
+inline constexpr int chunk_paths = 2048;
 
 // Paths first .. first + count - 1.
 struct PathRange {
@@ -27,9 +29,15 @@ class Chunk {
 public:
     Chunk(const KernelSet& kernels, const EmbreeScene* embree, const SceneView& scene);
 
-    // All samples of one work item: `item` is a WorkItem, results are written at `first_result` of
-    // the planes in `results`. results.samples is the number of samples in the item.
-    void run(const PathView& results, int first_result, const void* item);
+    // How many work items of that many samples for each of 1 << pixel_shift pixels run together.
+    static int items_at_once(int samples, int pixel_shift)
+    {
+        return std::max(1, (chunk_paths >> pixel_shift) / samples);
+    }
+
+    // All samples of `items` work items of a dispatch, which run together; `results` has the items,
+    // what they have in common, and the planes for the results of the whole dispatch.
+    void run(const PathView& results, int first_item, int items);
 
     size_t bytes() const { return memory_.size(); }
 

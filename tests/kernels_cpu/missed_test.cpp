@@ -116,8 +116,9 @@ int lanes_of(double right)
     view.result_planes = planes.data();
     view.texture_result_planes = texture_planes.data();
     const WorkItem item{0, 0, 0, 0};
+    view.items = &item;
     lanes = 0;
-    Chunk(kernels, nullptr, scene_view).run(view, 0, &item);
+    Chunk(kernels, nullptr, scene_view).run(view, 0, 1);
     return lanes;
 }
 

@@ -56,6 +56,18 @@ TEST_P(Determinism, ThreadsAndMemoryChangeNoBit)
     EXPECT_TRUE(is_same(one, picture_of(GetParam(), {}, scene, short_dispatches)));
 }
 
+// Where work items hold few paths, the cpu backend runs as many together as leave each thread some.
+TEST_P(Determinism, ItemsThatRunTogetherChangeNoBit)
+{
+    const RenderOptions samples = with_samples(2);
+    const SceneData scene = busy_scene(160, 96);
+    const std::vector<float> together = picture_of(GetParam(), with_threads(1), scene, samples);
+    EXPECT_TRUE(is_same(together, picture_of(GetParam(), with_threads(64), scene, samples)));
+    RenderOptions odd_dispatches = samples;
+    odd_dispatches.most_items = 7;
+    EXPECT_TRUE(is_same(together, picture_of(GetParam(), with_threads(1), scene, odd_dispatches)));
+}
+
 // Paths may be under way when it is stopped: what they have found so far is not lost.
 TEST_P(Determinism, StoppedAndResumedARenderHasTheSameBits)
 {

@@ -112,6 +112,29 @@ TEST(Adaptive, RoundsLeaveNoSlotsIdle)
     EXPECT_TRUE(is_same(picture_of(result), picture_of(render(*twin, scene, options))));
 }
 
+// In a white room paths end one by one, the last after many bounces; in blocks of 8 x 8 pixels.
+TEST(Adaptive, PacketsOfTheCpuHaveFewEmptyLanes)
+{
+    SceneBuilder builder;
+    builder.place(builder.add_mesh(
+        box_mesh({-1, -1, -1}, {1, 1, 1}, builder.add_material(lambert(0.98f, 0.02f)))));
+    builder.set_camera({.eye = {0, 0, 0.5}, .target = {0, 0, 0}});
+    builder.set_picture_size(96, 54);
+    SceneData scene = builder.finish();
+    scene.settings[0].max_bounces = 64;
+    BackendOptions one_thread;
+    one_thread.threads = 1;
+    const std::unique_ptr<Backend> backend = make_backend("cpu", one_thread);
+    backend->upload(scene);
+    RenderOptions options = to_error(0.01);
+    options.samples = 64;
+    const Statistics spent = render(*backend, scene, options).statistics;
+    const double busy = double(spent.busy_steps) / double(spent.slot_steps);
+    RecordProperty("busy", std::to_string(busy));
+    EXPECT_GT(busy, 0.97);
+    EXPECT_LE(busy, 1.0);
+}
+
 TEST(Adaptive, ATimeLimitLeavesACompletePicture)
 {
     SceneData scene = busy_scene(72, 40);
