@@ -116,7 +116,7 @@ CLI::App* add_merge_command(CLI::App& app, MergeCommand& command)
 
 int run_merge_command(const MergeCommand& command)
 {
-    const image::WriteOptions write = picture_options(command.view, command.write);
+    const image::WriteOptions write = picture_options(command.view, command.write, command.outputs);
     std::vector<std::string> pictures, checkpoints;
     for (const std::string& path : command.outputs) {
         expect_no_input(path, command.inputs);

@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 namespace diptych {
+
 void add_picture_flags(CLI::App& app, std::string& view, image::WriteOptions& write)
 {
     app.add_option("--exposure", write.exposure, "Stops, for display pictures")
@@ -20,12 +22,17 @@ void add_picture_flags(CLI::App& app, std::string& view, image::WriteOptions& wr
     app.add_flag("--16bit", write.sixteen_bit, "PNG and TIFF: 16 bits a channel");
 }
 
-image::WriteOptions picture_options(const std::string& view, image::WriteOptions write)
+image::WriteOptions picture_options(const std::string& view, image::WriteOptions write,
+                                    const std::vector<std::string>& files)
 {
     write.view = image::view_of_name(view);
     if (!(std::abs(write.exposure) <= 100))
         throw std::runtime_error(fmt::format(
             "--exposure {}: out of range; give stops from -100 to 100", write.exposure));
+    if (write.half && std::ranges::none_of(files, image::holds_layers))
+        throw std::runtime_error("--half: of .exr files only; name one with -o");
+    if (write.sixteen_bit && std::ranges::none_of(files, image::holds_sixteen_bits))
+        throw std::runtime_error("--16bit: of .png and .tif files only; name one with -o");
     return write;
 }
 

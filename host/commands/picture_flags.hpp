@@ -5,6 +5,7 @@
 #include "host/image/image.hpp"
 
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -15,8 +16,9 @@ namespace diptych {
 // --exposure, --view, --half, --16bit.
 void add_picture_flags(CLI::App& app, std::string& view, image::WriteOptions& write);
 
-// `write` with the view of that name. Throws std::runtime_error for another, or an exposure out of
-// range.
-image::WriteOptions picture_options(const std::string& view, image::WriteOptions write);
+// `write` with the view of that name. Throws std::runtime_error for another, an exposure out of
+// range, or a precision that none of these files has.
+image::WriteOptions picture_options(const std::string& view, image::WriteOptions write,
+                                    const std::vector<std::string>& files);
 
 }  // namespace diptych

@@ -206,15 +206,13 @@ CLI::App* add_render_command(CLI::App& app, RenderCommand& command)
 
 int run_render_command(const RenderCommand& command)
 {
-    const image::WriteOptions write = picture_options(command.view, command.write);
     RenderCommand run = command;
     run.device = with_device_list(run.device);
     if (run.outputs.empty() && wants_picture(run)) run.outputs.push_back("diptych.png");
+    const image::WriteOptions write = picture_options(run.view, run.write, run.outputs);
     for (const std::string& path : run.outputs) image::check_writable(path);
     expect_all_different(run);
-    const bool has_layers = std::ranges::any_of(run.outputs, [](const std::string& path) {
-        return std::filesystem::path(path).extension() == ".exr";
-    });
+    const bool has_layers = std::ranges::any_of(run.outputs, image::holds_layers);
     if (!run.scene.load.aovs.empty() && !has_layers && run.json.empty() &&
         run.checkpoint.file.empty())
         throw std::runtime_error("--aov: pictures with layers are .exr files; name one with -o");

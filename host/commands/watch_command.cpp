@@ -138,8 +138,8 @@ int run_watch_command(const WatchCommand& command)
 {
     RenderCommand run = command.render;
     run.device = with_device_list(run.device);
-    const image::WriteOptions write = picture_options(run.view, run.write);
     if (run.outputs.empty()) run.outputs.push_back("diptych.png");
+    const image::WriteOptions write = picture_options(run.view, run.write, run.outputs);
     for (const std::string& path : run.outputs) image::check_writable(path);
 
     RenderOptions aims;

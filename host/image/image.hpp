@@ -78,8 +78,11 @@ void write_picture(const std::string& path, const Picture& picture,
 void write_pictures(const std::vector<std::string>& paths, const Picture& picture,
                     const WriteOptions& options = {});
 
-// Its extension is one that write_picture knows.
+// Its extension is one that write_picture knows; one of a format that holds layers, and halves; one
+// of a format that can hold display colours in 16 bits.
 bool is_picture_name(const std::string& path);
+bool holds_layers(const std::string& path);
+bool holds_sixteen_bits(const std::string& path);
 
 // Throws now what write_picture would throw after the rendering: unknown extension, no such folder,
 // not writable.

@@ -307,6 +307,18 @@ void write_file_whole(const std::string& path, std::string_view bytes)
 
 bool is_picture_name(const std::string& path) { return encoder_by_extension(path) != nullptr; }
 
+bool holds_layers(const std::string& path)
+{
+    const char* encoder = encoder_by_extension(path);
+    return encoder && std::string_view(encoder) == "openexr";
+}
+
+bool holds_sixteen_bits(const std::string& path)
+{
+    const char* encoder = encoder_by_extension(path);
+    return encoder && (std::string_view(encoder) == "png" || std::string_view(encoder) == "tiff");
+}
+
 void check_writable(const std::string& path)
 {
     encoder_of(path);

@@ -71,6 +71,9 @@ TEST(CommandLine, FlagsWithoutEffectAreRefused)
     refuse(seen({"--up", "0,0,0"}), "--up 0,0,0");
     refuse({"--fast-math"}, "--backend opencl");
     refuse({"--seed", "-1"}, "4294967295");
+    refuse({"--half"}, ".exr");
+    refuse({"--half", "-o", "a.png", "-o", "b.tif"}, ".exr");
+    refuse({"--16bit", "-o", "a.exr", "-o", "b.jpg"}, ".png and .tif");
     refuse({"-o", "a.png", "-o", "./a.png"}, "two outputs");
     refuse({"-o", "a.png", "--json", "a.png"}, "two outputs");
     for (const char* flag : {"--json", "--env", "--camera", "--device", "--checkpoint", "-o"})
