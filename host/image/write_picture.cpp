@@ -27,10 +27,13 @@ constexpr float LARGEST_HALF = 65504;
 
 struct Format {
     const char* extension;
-    const char* encoder;
+    std::string_view encoder;
+    bool holds_layers;
+    bool holds_sixteen_bits;
 };
-constexpr Format FORMATS[] = {{".exr", "openexr"}, {".png", "png"},  {".jpg", "jpeg"},
-                              {".jpeg", "jpeg"},   {".tif", "tiff"}, {".tiff", "tiff"}};
+constexpr Format FORMATS[] = {{".exr", "openexr", true, false}, {".png", "png", false, true},
+                              {".jpg", "jpeg", false, false},   {".jpeg", "jpeg", false, false},
+                              {".tif", "tiff", false, true},    {".tiff", "tiff", false, true}};
 
 [[noreturn]] void fail(const std::string& path, const std::string& what)
 {
@@ -38,19 +41,19 @@ constexpr Format FORMATS[] = {{".exr", "openexr"}, {".png", "png"},  {".jpg", "j
 }
 
 // Null for a name that is no picture's.
-const char* encoder_by_extension(const std::string& path)
+const Format* find_format(const std::string& path)
 {
     std::string extension = fs::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
     for (const Format& format : FORMATS)
-        if (extension == format.extension) return format.encoder;
+        if (extension == format.extension) return &format;
     return nullptr;
 }
 
-std::string encoder_of(const std::string& path)
+const Format& format_of(const std::string& path)
 {
-    if (const char* encoder = encoder_by_extension(path)) return encoder;
+    if (const Format* format = find_format(path)) return *format;
     fail(path,
          fmt::format("unknown picture format '{}'; use .exr, .png, .jpg, .jpeg, .tif or .tiff",
                      fs::path(path).extension().string()));
@@ -179,9 +182,10 @@ void pack_exr_row(const Picture& picture, const WriteOptions& options, int y, ch
 }
 
 OIIO::ImageSpec display_spec(const Picture& picture, const WriteOptions& options,
-                             const std::string& encoder, bool alpha)
+                             const Format& format, bool alpha)
 {
-    const bool sixteen = options.sixteen_bit && encoder != "jpeg";
+    const std::string_view encoder = format.encoder;
+    const bool sixteen = options.sixteen_bit && format.holds_sixteen_bits;
     OIIO::ImageSpec spec(picture.width, picture.height, alpha ? 4 : 3,
                          sixteen ? TypeDesc::UINT16 : TypeDesc::UINT8);
     spec.attribute("oiio:UnassociatedAlpha", 1);
@@ -230,7 +234,7 @@ template<class PackRow>
 std::vector<unsigned char> encode(const std::string& path, const OIIO::ImageSpec& spec,
                                   PackRow&& pack_row)
 {
-    const std::string encoder = encoder_of(path);
+    const std::string encoder(format_of(path).encoder);
     auto output = OIIO::ImageOutput::create(encoder);
     if (!output) fail(path, "this OpenImageIO has no encoder for it (" + OIIO::geterror() + ")");
     OIIO::Filesystem::IOVecOutput memory;
@@ -265,9 +269,9 @@ std::vector<unsigned char> encode_display(const std::string& path, const Picture
     const Layer& layer = beauty_of(picture);
     if (layer.pixels.empty())
         fail(path, "whole-number layers have no colours to show; write them to .exr");
-    const std::string encoder = encoder_of(path);
-    const bool alpha = options.alpha && encoder != "jpeg" && layer.channels.size() >= 4;
-    const OIIO::ImageSpec spec = display_spec(picture, options, encoder, alpha);
+    const Format& format = format_of(path);
+    const bool alpha = options.alpha && format.encoder != "jpeg" && layer.channels.size() >= 4;
+    const OIIO::ImageSpec spec = display_spec(picture, options, format, alpha);
     return encode(path, spec, [&](int y, char* out) {
         pack_display_row(picture, layer, options, spec, y, out);
     });
@@ -278,9 +282,8 @@ std::vector<unsigned char> encode_display(const std::string& path, const Picture
 void write_picture(const std::string& path, const Picture& picture, const WriteOptions& options)
 {
     check_layers(path, picture);
-    const bool exr = encoder_of(path) == "openexr";
-    const auto bytes =
-        exr ? encode_exr(path, picture, options) : encode_display(path, picture, options);
+    const auto bytes = format_of(path).holds_layers ? encode_exr(path, picture, options)
+                                                    : encode_display(path, picture, options);
     write_file_whole(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
@@ -305,23 +308,23 @@ void write_file_whole(const std::string& path, std::string_view bytes)
     file.put_in_place();
 }
 
-bool is_picture_name(const std::string& path) { return encoder_by_extension(path) != nullptr; }
+bool is_picture_name(const std::string& path) { return find_format(path) != nullptr; }
 
 bool holds_layers(const std::string& path)
 {
-    const char* encoder = encoder_by_extension(path);
-    return encoder && std::string_view(encoder) == "openexr";
+    const Format* format = find_format(path);
+    return format && format->holds_layers;
 }
 
 bool holds_sixteen_bits(const std::string& path)
 {
-    const char* encoder = encoder_by_extension(path);
-    return encoder && (std::string_view(encoder) == "png" || std::string_view(encoder) == "tiff");
+    const Format* format = find_format(path);
+    return format && format->holds_sixteen_bits;
 }
 
 void check_writable(const std::string& path)
 {
-    encoder_of(path);
+    format_of(path);
     check_file_writable(path);
 }
 
