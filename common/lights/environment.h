@@ -1,7 +1,8 @@
 // Light from everywhere: a latitude-longitude image, row 0 at +Y, u = 0.5 + atan2(z, x) / 2 pi, v =
-// acos(y) / pi in the environment's own frame. Sampled in proportion to the filtered map's
-// brightness, by inversion: neighbouring sample values give neighbouring directions, so that the
-// spread of the samples over the unit square survives.
+// acos(y) / pi in the environment's own frame. Sampled in proportion to how much brighter the
+// filtered map is than its mean, as scattering finds the rest, by inversion: neighbouring sample
+// values give neighbouring directions, so that the spread of the samples over the unit square
+// survives.
 #pragma once
 
 #include "common/buffers.h"
@@ -72,10 +73,10 @@ SHARED float3 environment_radiance(const Scene* scene, float2 uv)
 }
 
 // environment_cells: the cumulated shares of the rows (cell_rows + 1 values from 0 to 1), then
-// those of the columns within each row (cell_columns + 1 values each), then the brightness at the
-// nodes, cell_columns in each of cell_rows - 1 rows. Shares are multiples of 2^-24, as sample
-// values are: differences are exact, and are the very probabilities with which sample values fall
-// between two of them.
+// those of the columns within each row (cell_columns + 1 values each), then the brightness above
+// the mean at the nodes, cell_columns in each of cell_rows - 1 rows. Shares are multiples of 2^-24,
+// as sample values are: differences are exact, and are the very probabilities with which sample
+// values fall between two of them.
 //
 // A node is the middle of a texel (in maps of more than MOST_ENVIRONMENT_CELLS, of a few). A cell
 // reaches from four of them to each other: column k from node k to node k + 1, around the seam, and

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace diptych {
 namespace {
@@ -81,6 +82,21 @@ struct Nodes {
     int rows;
     std::vector<float> values;
 
+    double row_solid_angle(int row) const
+    {
+        return 2 * pi * (std::cos(pi * row / rows) - std::cos(pi * (row + 1) / rows));
+    }
+
+    double mean() const
+    {
+        double sum = 0;
+        for (int row = 0; row < rows; ++row) {
+            const auto first = values.begin() + std::ptrdiff_t(row) * columns;
+            sum += row_solid_angle(row) * std::accumulate(first, first + columns, 0.0) / columns;
+        }
+        return sum / (4 * pi);
+    }
+
     double at(int row, int column) const
     {
         const size_t y = size_t(std::clamp(row, 0, rows - 1)), x = size_t(column % columns);
@@ -106,6 +122,18 @@ Nodes nodes_of(std::vector<float> map, int width, int height)
         }
     }
     return nodes;
+}
+
+// Leaves what is brighter than the mean: scattering finds the rest as well as light sampling would,
+// which then serves the bright parts alone (Karlik et al. 2019, MIS Compensation). An even map,
+// in which nothing would be left, stays as it is.
+void compensate(Nodes& nodes)
+{
+    constexpr double least_left = 0.01;  // of the mean
+    const double mean = nodes.mean();
+    Nodes above = nodes;
+    for (float& value : above.values) value = float(std::max(double(value) - mean, 0.0));
+    if (above.mean() > least_left * mean) nodes = std::move(above);
 }
 
 // Appends the cumulated shares of the weights: count + 1 values from 0 to 1, never falling, in
@@ -187,11 +215,12 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
             {map.floats[t], map.floats[t + 1], map.floats[t + 2], map.floats[t + 3]});
     }
 
-    const Nodes nodes = nodes_of(luminance_map(map), map.width, map.height);
+    Nodes nodes = nodes_of(luminance_map(map), map.width, map.height);
+    const double power = 4 * pi * nodes.mean();
+    compensate(nodes);
     const int columns = nodes.columns, rows = nodes.rows + 1;
     std::vector<double> weights;
     weights.reserve(size_t(columns) * size_t(rows));
-    double integral = 0;
     for (int row = 0; row < rows; ++row) {
         const double upper = std::max(row - 0.5, 0.0), lower = std::min(row + 0.5, rows - 1.0);
         const double solid_angle =
@@ -201,7 +230,6 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
             const double mean = 0.25 * (nodes.at(row - 1, column) + nodes.at(row - 1, column + 1) +
                                         nodes.at(row, column) + nodes.at(row, column + 1));
             weights.push_back(mean * solid_angle);
-            integral += mean * solid_angle;
         }
     }
     s.cell_columns = columns;
@@ -215,7 +243,7 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
         data.notices.push_back("environment: " + std::to_string(file.bad_texels) +
                                " values were NaN, infinite or negative; they were replaced");
     }
-    return integral * scale;
+    return power * scale;
 }
 
 Picture neutral_sky()

@@ -245,11 +245,26 @@ double over_mean(const SceneData& data, int row, int column, double x, double y)
     return (top * (1 - y) + bottom * y) / mean;
 }
 
-// The density is the filtered brightness where nodes are texels; where they stand for several, no
-// direction may be much brighter than the density with which it is found.
-TEST(Environment, Cells_follow_the_filtered_map)
+// At the nodes, over all directions.
+double mean_of_nodes(const SceneData& data, const std::function<double(double)>& of_radiance)
 {
-    for (const auto& [width, height] : {std::pair{64, 32}, {1500, 700}, {1, 1}, {5000, 8}}) {
+    const int columns = data.settings[0].cell_columns, rows = data.settings[0].cell_rows - 1;
+    double sum = 0, area = 0;
+    for (int y = 0; y < rows; ++y) {
+        const double sine = std::sin(pi * (y + 0.5) / rows);
+        for (int x = 0; x < columns; ++x)
+            sum += sine * of_radiance(filtered(data, (x + 0.5) / columns, (y + 0.5) / rows));
+        area += sine * columns;
+    }
+    return sum / area;
+}
+
+// What light sampling and scattering find, the latter by the mean in all directions, is the
+// filtered map's brightness or more; where nodes stand for several texels, no direction is much
+// brighter.
+TEST(Environment, Light_sampling_finds_what_is_brighter_than_the_mean)
+{
+    for (const auto& [width, height] : {std::pair{64, 32}, {1500, 700}, {5000, 8}}) {
         SceneBuilder scene;
         scene.set_environment(environment_map(width, height));
         const SceneData data = scene.finish();
@@ -261,8 +276,11 @@ TEST(Environment, Cells_follow_the_filtered_map)
         EXPECT_LE(s.cell_rows, MOST_ENVIRONMENT_CELLS);
         ASSERT_EQ(data.environment_cells.size(), cumulated_size(s));
 
-        double integral = 0, weighted = 0;
-        double worst = 0;
+        const bool is_exact = s.cell_columns == width;
+        const double mean = mean_of_nodes(data, [](double value) { return value; });
+        const double above =
+            4 * pi * mean_of_nodes(data, [&](double value) { return std::max(value - mean, 0.0); });
+        double integral = 0, weighted = 0, worst = 0, where_dark = 0;
         std::mt19937 random(5);
         std::uniform_real_distribution<double> unit_range(0, 1);
         for (int row = 0; row < s.cell_rows; ++row) {
@@ -271,21 +289,50 @@ TEST(Environment, Cells_follow_the_filtered_map)
                 const double upper = std::max(row - 0.5, 0.0), lower = std::min(row + 0.5, rows);
                 const double x = unit_range(random);
                 const double y = upper + (lower - upper) * unit_range(random);
-                const double brightness =
-                    filtered(data, (column + 0.5 + x) / s.cell_columns, y / rows);
+                const auto brightness = [&](double u, double v) {
+                    return filtered(data, u / s.cell_columns, v / rows);
+                };
+                const double here = brightness(column + 0.5 + x, y);
                 const double solid_angle =
                     2 * pi / s.cell_columns *
                     (std::cos(pi * upper / rows) - std::cos(pi * lower / rows));
-                const double density = cell_probability(data, row, column) / solid_angle *
-                                       over_mean(data, row, column, x, y - (row - 0.5));
-                integral += brightness * solid_angle;
-                weighted += brightness * brightness / density * solid_angle;
-                worst = std::max(worst, brightness / density);
+                const double probability = cell_probability(data, row, column);
+                const double density = probability > 0
+                                           ? probability / solid_angle *
+                                                 over_mean(data, row, column, x, y - (row - 0.5))
+                                           : 0;
+                const double found = density * above + mean;
+                integral += here * solid_angle;
+                weighted += here * here / found * solid_angle;
+                worst = std::max(worst, here / found);
+                const double corners =
+                    std::max({brightness(column + 0.5, upper), brightness(column + 1.5, upper),
+                              brightness(column + 0.5, lower), brightness(column + 1.5, lower)});
+                if (corners < 0.99 * mean) where_dark += probability;
             }
         }
-        const bool is_exact = s.cell_columns == width;
-        EXPECT_LT(worst, (is_exact ? 1.01 : 6) * integral) << width;
-        EXPECT_LT(weighted / (integral * integral), is_exact ? 1.01 : 2) << width;
+        EXPECT_LT(worst, is_exact ? 1.02 : 6) << width;
+        EXPECT_LT(weighted / integral, is_exact ? 1 : 1.5) << width;
+        EXPECT_LT(where_dark, is_exact ? 1e-6 : 0.5) << width;
+    }
+}
+
+TEST(Environment, Light_samples_of_an_even_one_are_even)
+{
+    for (const auto& [width, height] : {std::pair{1, 1}, {16, 8}}) {
+        SceneBuilder scene;
+        scene.set_environment(
+            Picture{width, height, {}, std::vector<float>(size_t(4 * width * height), 0.7f)});
+        const SceneData data = scene.finish();
+        const Settings& s = data.settings[0];
+        for (int row = 0; row < s.cell_rows; ++row) {
+            const double rows = s.cell_rows - 1;
+            const double upper = std::max(row - 0.5, 0.0), lower = std::min(row + 0.5, rows);
+            const double share =
+                (std::cos(pi * upper / rows) - std::cos(pi * lower / rows)) / 2 / s.cell_columns;
+            for (int column = 0; column < s.cell_columns; ++column)
+                EXPECT_NEAR(cell_probability(data, row, column), share, 1e-6);
+        }
     }
 }
 
