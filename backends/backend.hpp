@@ -6,6 +6,7 @@
 
 #include "common/stages/stages.h"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -25,6 +26,19 @@ struct Dispatch {
     int paths() const { return int(items.size()) * samples << pixel_shift; }
     int results() const { return int(items.size()) << pixel_shift; }
 };
+
+// How many paths of the first `items` of a dispatch have a pixel in the picture: blocks at its
+// edges reach beyond.
+inline unsigned long long paths_in_picture(const Dispatch& dispatch, int items,
+                                           const Settings& picture)
+{
+    const int side = 1 << (dispatch.pixel_shift / 2);
+    unsigned long long pixels = 0;
+    for (const WorkItem& item : dispatch.items.first(size_t(items)))
+        pixels += unsigned(std::min(side, picture.width - item.x)) *
+                  unsigned(std::min(side, picture.height - item.y));
+    return pixels * unsigned(dispatch.samples);
+}
 
 // Sums over the samples of each work item, a vector per result row; float3 rows are three planes of
 // `results` entries, those of textures as many as texture_result_planes says. The double backend

@@ -109,6 +109,7 @@ private:
     std::mutex chunks_mutex_;
     std::vector<std::unique_ptr<Chunk>> chunks_;
     double setup_seconds_ = 0;
+    unsigned long long paths_ = 0;
 };
 
 int result_components(int row)
@@ -141,6 +142,7 @@ void CpuBackend::upload(SceneData& scene)
 {
     const auto start = std::chrono::steady_clock::now();
     chunks_.clear();
+    paths_ = 0;
     scene_ = &scene;
     if (!uses_embree_ && scene.bvh_nodes.empty()) build_bvh(scene);
     bind(scene);
@@ -226,6 +228,7 @@ void CpuBackend::build_textures(const SceneData& scene)
     options.use_generated = options_.use_generated;
     auto stage = std::make_unique<NativeStage>(scene, options);
     chunks_.clear();  // they run the old one
+    paths_ = 0;
     textures_ = std::move(stage);
     if (uses_embree_) textures_->set_tracer(trace_texture_ray_by_ray, embree_.get());
     scene_view_.textures = &textures_->kernels();
@@ -303,6 +306,7 @@ void CpuBackend::render(const Dispatch& dispatch, Results& results)
         chunk->run(view, first, std::min(at_once, items - first));
         return_chunk(std::move(chunk));
     });
+    paths_ += paths_in_picture(dispatch, items, scene_->settings[0]);
     int row = 0;
 #define COPY_RESULT(type, name)                                         \
     narrow(results.name, result_planes_[row],                           \
@@ -352,6 +356,7 @@ Statistics CpuBackend::statistics() const
 {
     Statistics statistics;
     statistics.setup_seconds = setup_seconds_;
+    statistics.paths = paths_;
     statistics.allocated_bytes = result_memory_.size();
     for (const auto& chunk : chunks_) {
 #define ADD_STAGE(name, body, when, needs) \
@@ -360,7 +365,6 @@ Statistics CpuBackend::statistics() const
         statistics.rays += chunk->rays;
         statistics.shadow_rays += chunk->shadow_rays;
         statistics.undecided_rays += chunk->undecided_rays;
-        statistics.paths += chunk->paths;
         statistics.allocated_bytes += chunk->bytes();
         statistics.slot_steps += chunk->slot_steps;
         statistics.busy_steps += chunk->busy_steps;

@@ -1,6 +1,6 @@
 #include "backends/device_group.hpp"
 
-#include "backends/work_list.hpp"
+#include "backends/group_flight.hpp"
 
 #include <fmt/format.h>
 
@@ -13,11 +13,19 @@
 namespace diptych {
 namespace {
 
-constexpr int pieces_ahead = 4;  // of each device, in a dispatch: few waits for the slowest
+constexpr int pieces_ahead =
+    4;  // of what each device holds, in a dispatch: few waits for the slowest
 
-// Of a device whose slots are filled again and again: enough to keep them busy, so few that what is
-// left can be shared.
-int piece_items(const Plan& plan) { return std::clamp(4 * plan.items, 1, plan.most_items); }
+// Whether paths stay under way in a device from one dispatch to the next.
+bool is_streaming(const Plan& plan) { return plan.most_items > plan.items; }
+
+// That a device has at once: of one whose slots are filled again and again, an entry for each, and
+// a few for those that end first.
+int items_held(const Plan& plan)
+{
+    return is_streaming(plan) ? std::min(plan.items * (QUANTUM + QUANTUM / 4), plan.most_items)
+                              : plan.most_items;
+}
 
 // A plan's items are blocks of the largest size; an OpenCL device has room for four times as many
 // of smaller ones.
@@ -26,24 +34,17 @@ int most_items(int planned, int pixel_shift)
     return planned << std::min(2, 2 * BLOCK_SHIFT - pixel_shift);
 }
 
-// The rows of `part`, `count` entries, to those of the whole from entry `first` on.
-template<class Row>
-void place(Row& whole, const Row& part, int entries, int first, int count)
-{
-    for (size_t plane = 0; plane * size_t(entries) < whole.size(); ++plane)
-        std::copy_n(part.begin() + std::ptrdiff_t(plane * size_t(count)), count,
-                    whole.begin() + std::ptrdiff_t(plane * size_t(entries)) + first);
-}
-
 class DeviceGroup final : public Backend {
 public:
     DeviceGroup(std::vector<std::unique_ptr<Backend>> devices,
                 std::function<void(const std::string&)> notify)
         : devices_(std::move(devices)), notify_(std::move(notify)), paces_(devices_.size()),
-          paths_(devices_.size())
+          held_(devices_.size()), streams_(devices_.size()), reported_(devices_.size()),
+          is_dropped_(devices_.size())
     {
         if (devices_.empty()) throw std::runtime_error("devices: an empty list; name one");
     }
+    ~DeviceGroup() override { halt(); }
 
     std::string description() const override
     {
@@ -62,20 +63,28 @@ public:
     {
         update([&](Backend& device) { device.update_textures(scene); });
     }
-    void render(const Dispatch& dispatch, Results& results) override;
+    void render(const Dispatch& dispatch, Results& results) override
+    {
+        halt();
+        advance(dispatch, {}, results);
+    }
+    int advance(const Dispatch& dispatch, const Pace& pace, Results& results) override;
     void trace(const Dispatch& dispatch,
                const std::function<void(const StageState&)>& after_stage) override;
     Statistics statistics() const override;
 
 private:
-    void make_room(const Dispatch& dispatch, Results& results) const;
-    void work(size_t device, WorkList& list, const Dispatch& dispatch, Results& results);
+    void begin_flight(const Dispatch& dispatch);
+    void halt();
+    void work(size_t device);
+    void report(size_t device);
     void drop(size_t device, const std::string& reason);
-    [[noreturn]] void fail() const;
+    [[noreturn]] void fail();
 
     template<class Update>
     void update(const Update& update)
     {
+        halt();
         bool is_first = true;
         for (size_t d = 0; d < devices_.size(); ++d) {
             if (!paces_[d].lives) continue;
@@ -93,11 +102,16 @@ private:
     std::vector<std::unique_ptr<Backend>> devices_;
     std::function<void(const std::string&)> notify_;
     std::vector<DevicePace> paces_;
-    std::vector<int> planned_;
-    std::vector<unsigned long long> paths_;  // that each has rendered and that count
-    std::array<int, std::tuple_size_v<decltype(texture_result_planes({}))>> texture_planes_{};
-    std::mutex failures_;
+    std::vector<int> held_;  // items that each has at most
+    std::vector<char> streams_;
+
+    mutable std::mutex mutex_;  // of what follows, which threads of devices write
+    std::vector<Statistics> reported_;
+    std::vector<char> is_dropped_;
     std::string last_failure_;
+
+    std::unique_ptr<GroupFlight> flight_;
+    std::vector<std::jthread> threads_;  // a device each, while there is a flight
 };
 
 Plan DeviceGroup::plan(const SceneData& scene) const
@@ -107,7 +121,7 @@ Plan DeviceGroup::plan(const SceneData& scene) const
         if (!paces_[d].lives) continue;
         const Plan plan = devices_[d]->plan(scene);
         sum.items += plan.items;
-        sum.most_items += pieces_ahead * piece_items(plan);
+        sum.most_items += pieces_ahead * items_held(plan);
         sum.scene_bytes += plan.scene_bytes;
         sum.texture_bytes += plan.texture_bytes;
         sum.structure_bytes += plan.structure_bytes;
@@ -119,91 +133,98 @@ Plan DeviceGroup::plan(const SceneData& scene) const
 
 void DeviceGroup::upload(SceneData& scene)
 {
+    halt();
     if (std::none_of(paces_.begin(), paces_.end(), [](auto& pace) { return pace.lives; })) fail();
-    planned_.assign(devices_.size(), 1);
-    std::fill(paths_.begin(), paths_.end(), 0);
-    texture_planes_ = texture_result_planes(scene);
     for (size_t d = 0; d < devices_.size(); ++d) {
+        reported_[d] = {};
         if (!paces_[d].lives) continue;
         devices_[d]->upload(scene);
-        planned_[d] = piece_items(devices_[d]->plan(scene));
+        const Plan plan = devices_[d]->plan(scene);
+        held_[d] = items_held(plan);
+        streams_[d] = is_streaming(plan) ? 1 : 0;
         paces_[d].per_second = 0;
+        reported_[d] = devices_[d]->statistics();
     }
 }
 
-void DeviceGroup::make_room(const Dispatch& dispatch, Results& results) const
+void DeviceGroup::begin_flight(const Dispatch& dispatch)
 {
-    const size_t entries = size_t(dispatch.results());
-#define RESIZE(type, name) results.name.resize(entries*(sizeof(type) / sizeof(PLANE(type))));
-    RESULT_BUFFERS(RESIZE)
-#undef RESIZE
-    size_t row = 0;
-#define RESIZE(type, name) results.name.resize(entries* size_t(texture_planes_[row++]));
-    TEXTURE_RESULT_BUFFERS(RESIZE)
-#undef RESIZE
-}
-
-void DeviceGroup::render(const Dispatch& dispatch, Results& results)
-{
-    make_room(dispatch, results);
+    halt();
     for (size_t d = 0; d < devices_.size(); ++d)
-        paces_[d].most = most_items(planned_.at(d), dispatch.pixel_shift);
-    const int paths_per_item = dispatch.samples << dispatch.pixel_shift;
-    WorkList list(int(dispatch.items.size()), paths_per_item, paces_);
-    {
-        std::vector<std::jthread> threads;
-        std::vector<size_t> living;
-        for (size_t d = 0; d < devices_.size(); ++d)
-            if (paces_[d].lives) living.push_back(d);
-        for (const size_t d : living)
-            threads.emplace_back([&, d] { work(d, list, dispatch, results); });
-    }
-    if (list.missing() > 0) fail();
+        paces_[d].most = most_items(held_[d], dispatch.pixel_shift);
+    flight_ = std::make_unique<GroupFlight>(dispatch.samples, dispatch.pixel_shift, paces_);
+    for (size_t d = 0; d < devices_.size(); ++d)
+        if (paces_[d].lives) threads_.emplace_back([this, d] { work(d); });
 }
 
-void DeviceGroup::work(size_t device, WorkList& list, const Dispatch& dispatch, Results& results)
+void DeviceGroup::halt()
 {
-    using Clock = std::chrono::steady_clock;
-    Results part;
-    while (const std::optional<Range> range = list.take(device)) {
-        Dispatch piece = dispatch;
-        piece.items = dispatch.items.subspan(size_t(range->first), size_t(range->count));
-        try {
-            const Clock::time_point start = Clock::now();
-            devices_[device]->render(piece, part);
-            const int first = range->first << dispatch.pixel_shift;
-#define PLACE(type, name) \
-    place(results.name, part.name, dispatch.results(), first, piece.results());
-            RESULT_BUFFERS(PLACE)
-            TEXTURE_RESULT_BUFFERS(PLACE)
-#undef PLACE
-            const std::chrono::duration<double> taken = Clock::now() - start;
-            paths_[device] += unsigned(piece.paths());
-            list.done(device, *range, taken.count());
-        } catch (const std::exception& error) {
-            drop(device, error.what());  // before others go on, or end
-            list.give_back(device, *range);
-            return;
+    if (flight_) flight_->halt();
+    threads_.clear();
+    flight_.reset();
+}
+
+int DeviceGroup::advance(const Dispatch& dispatch, const Pace& pace, Results& results)
+{
+    if (!flight_ || !flight_->goes_on(dispatch)) begin_flight(dispatch);
+    flight_->extend(dispatch, pace.following);
+    const int all = int(dispatch.items.size());
+    int done = 0;
+    bool is_finishing = false;
+    for (bool is_left = false; !is_left;) {
+        flight_->wait();
+        if (!flight_->has_devices()) fail();
+        const Wish wish = pace.wish ? pace.wish() : Wish::go_on;
+        if (wish == Wish::finish && !is_finishing) {
+            is_finishing = true;
+            flight_->finish();
         }
+        const bool is_over = flight_->is_over();
+        done = flight_->done();
+        const bool is_list_short = pace.following > 0 && done > 0 && flight_->has_begun_all();
+        is_left = wish == Wish::leave || is_list_short || done == all || (is_finishing && is_over);
     }
+    flight_->take(done, results);
+    if (is_finishing) halt();
+    return done;
+}
+
+void DeviceGroup::work(size_t device)
+{
+    try {
+        flight_->work(device, *devices_[device], streams_[device] != 0, [&] { report(device); });
+    } catch (const std::exception& error) {
+        drop(device, error.what());  // before others go on, or end
+        flight_->give_back(device);
+    }
+}
+
+void DeviceGroup::report(size_t device)
+{
+    Statistics now = devices_[device]->statistics();
+    const std::lock_guard lock(mutex_);
+    reported_[device] = std::move(now);
 }
 
 void DeviceGroup::drop(size_t device, const std::string& reason)
 {
-    const std::lock_guard lock(failures_);
+    const std::lock_guard lock(mutex_);
+    is_dropped_[device] = 1;
     last_failure_ = fmt::format("{}: {}", devices_[device]->description(), reason);
     notify_(
         fmt::format("{}; it is dropped, what it had taken is rendered elsewhere", last_failure_));
 }
 
-void DeviceGroup::fail() const
+void DeviceGroup::fail()
 {
+    halt();
     throw std::runtime_error("no device is left; the last that failed: " + last_failure_);
 }
 
 void DeviceGroup::trace(const Dispatch& dispatch,
                         const std::function<void(const StageState&)>& after_stage)
 {
+    halt();
     for (size_t d = 0; d < devices_.size(); ++d)
         if (paces_[d].lives) return devices_[d]->trace(dispatch, after_stage);
     fail();
@@ -211,9 +232,10 @@ void DeviceGroup::trace(const Dispatch& dispatch,
 
 Statistics DeviceGroup::statistics() const
 {
+    const std::lock_guard lock(mutex_);
     Statistics sum;
     for (size_t d = 0; d < devices_.size(); ++d) {
-        const Statistics own = devices_[d]->statistics();
+        const Statistics& own = reported_[d];
         for (const auto& [stage, seconds] : own.stage_seconds) sum.stage_seconds[stage] += seconds;
         sum.setup_seconds += own.setup_seconds;
         sum.rays += own.rays;
@@ -222,8 +244,8 @@ Statistics DeviceGroup::statistics() const
         sum.allocated_bytes += own.allocated_bytes;
         sum.slot_steps += own.slot_steps;
         sum.busy_steps += own.busy_steps;
-        sum.paths += paths_[d];
-        sum.shares.push_back({devices_[d]->description(), paths_[d], !paces_[d].lives});
+        sum.paths += own.paths;
+        sum.shares.push_back({devices_[d]->description(), own.paths, is_dropped_[d] != 0});
     }
     return sum;
 }

@@ -51,6 +51,7 @@ private:
     };
     bool goes_on(const Flight& flight, const Dispatch& dispatch) const;
     void run_bounce();
+    void add_slots(int slots);
     void begin_entries(const Selection& slots, int first_entry);
     Selection live() const { return {live_, is_compacted_ ? &memory_.live[0] : nullptr}; }
     void refill(int end);
@@ -71,6 +72,7 @@ private:
     std::array<int, texture_rows> texture_planes_{};  // of each row
     OpenclStages stages_;
     unsigned effects_ = 0;
+    Settings picture_{};
 
     int slots_ = 0;  // of the dispatch that runs
     int live_ = 0;   // of these: listed in live[0], or the first ones
@@ -131,6 +133,7 @@ void OpenclBackend::upload(SceneData& scene)
     if (scene.bvh_nodes.empty()) build_bvh(scene);
     scene_ = upload_scene(context_, queue_, device_, scene);
     effects_ = scene.effects;
+    picture_ = scene.settings[0];
     stages_.build(context_, scene, cache_);
     texture_planes_ = texture_planes(scene);
     memory_ = DispatchMemory(context_, scene, plan(scene), device_.group_size);
@@ -190,14 +193,16 @@ int OpenclBackend::advance(const Dispatch& dispatch, const Pace& pace, Results& 
     const Flight flight = std::exchange(flight_, {});
     begin(dispatch, memory_.paths, OpenclStages::follow_up);
     int end = dispatch.results();
+    const int least = device_.is_cpu ? least_slots_of_cpu : least_slots_a_unit * device_.units;
+    const size_t entries = (dispatch.items.size() + pace.following) << dispatch.pixel_shift;
+    const size_t wanted = std::max(size_t(least), entries / entries_a_slot);
+    const int slots = int(std::min({wanted, size_t(end), size_t(memory_.paths)}));
     if (goes_on(flight, dispatch)) {
         memory_.write_results(queue_, flight.sums, begun_);
+        add_slots(slots);
         refill(end);
     } else {
-        const int least = device_.is_cpu ? least_slots_of_cpu : least_slots_a_unit * device_.units;
-        const size_t entries = (dispatch.items.size() + pace.following) << dispatch.pixel_shift;
-        const size_t wanted = std::max(size_t(least), entries / entries_a_slot);
-        slots_ = live_ = int(std::min({wanted, size_t(end), size_t(memory_.paths)}));
+        slots_ = live_ = slots;
         begun_ = 0;
         is_compacted_ = false;
         begin_entries({slots_, nullptr}, 0);
@@ -216,6 +221,17 @@ int OpenclBackend::advance(const Dispatch& dispatch, const Pace& pace, Results& 
     const int done = settle(dispatch, is_left, results);
     stages_.collect_times();
     return done;
+}
+
+// Up to `slots`, free ones: the list has become longer than it was when the others were chosen.
+void OpenclBackend::add_slots(int slots)
+{
+    if (slots <= slots_) return;
+    const std::vector<int> free(size_t(slots - slots_), sample_none);
+    for (const int row : {row_depth, row_sample})
+        queue_.write(memory_.path_planes[size_t(row)], free.size() * sizeof free[0], free.data(),
+                     size_t(slots_) * sizeof free[0]);
+    slots_ = slots;
 }
 
 void OpenclBackend::begin_entries(const Selection& slots, int first_entry)
@@ -282,7 +298,7 @@ int OpenclBackend::settle(const Dispatch& dispatch, bool is_left, Results& resul
     const int done = (is_left ? first_in_flight() : begun_) >> shift;
     const int moved = done << shift;
     memory_.read_results(queue_, results, 0, moved);
-    statistics_.paths += size_t(moved) * size_t(dispatch.samples);
+    statistics_.paths += paths_in_picture(dispatch, done, picture_);
     if (!is_left) return done;
     const size_t end = size_t(begun_ + (1 << shift) - 1) >> shift;
     Flight flight{{dispatch.items.begin() + done, dispatch.items.begin() + std::ptrdiff_t(end)},

@@ -12,8 +12,38 @@ int least_items(const DevicePace& pace) { return std::max(1, pace.most / 16); }
 }  // namespace
 
 WorkList::WorkList(int items, int paths_per_item, std::vector<DevicePace>& paces)
-    : paths_per_item_(paths_per_item), paces_(paces), left_{{0, items}}, left_count_(items)
+    : paths_per_item_(paths_per_item), paces_(paces), left_{{0, items}}, items_(items),
+      left_count_(items)
 {
+}
+
+void WorkList::append(int items)
+{
+    const std::lock_guard lock(mutex_);
+    if (left_.empty() || left_.front().first + left_.front().count < items_)
+        left_.insert(left_.begin(), {items_, 0});
+    left_.front().count += items;
+    items_ += items;
+    left_count_ += items;
+    changed_.notify_all();
+}
+
+int WorkList::cut_off()
+{
+    const std::lock_guard lock(mutex_);
+    if (!left_.empty() && left_.front().first + left_.front().count == items_) {
+        left_count_ -= left_.front().count;
+        items_ = left_.front().first;
+        left_.erase(left_.begin());
+    }
+    return items_;
+}
+
+void WorkList::close()
+{
+    const std::lock_guard lock(mutex_);
+    is_closed_ = true;
+    changed_.notify_all();
 }
 
 int WorkList::piece(size_t device) const
@@ -36,11 +66,11 @@ int WorkList::piece(size_t device) const
     return is_in_the_way ? 0 : count;
 }
 
-std::optional<Range> WorkList::cut(size_t device)
+std::optional<Range> WorkList::cut(size_t device, int most)
 {
     if (left_count_ == 0 || !paces_[device].lives) return std::nullopt;
     Range& from = left_.back();
-    const int count = std::min(piece(device), from.count);
+    const int count = std::min({piece(device), from.count, most});
     if (count == 0) return std::nullopt;
     const Range taken{from.first, count};
     from.first += count;
@@ -51,39 +81,48 @@ std::optional<Range> WorkList::cut(size_t device)
     return taken;
 }
 
-std::optional<Range> WorkList::take_now(size_t device)
+std::optional<Range> WorkList::take_now(size_t device, int most)
 {
     const std::lock_guard lock(mutex_);
-    return cut(device);
+    return cut(device, most);
 }
 
-std::optional<Range> WorkList::take(size_t device)
+std::optional<Range> WorkList::take(size_t device, int most)
 {
     std::unique_lock lock(mutex_);
-    while (left_count_ + running_count_ > 0) {
-        if (const std::optional<Range> range = cut(device)) return range;
-        changed_.wait(lock);  // for the end, or for what a device that fails gives back
+    while (!is_closed_) {
+        if (const std::optional<Range> range = cut(device, most)) return range;
+        changed_.wait(lock);  // for the end, for more, or for what a device that fails gives back
     }
     return std::nullopt;
 }
 
-void WorkList::done(size_t device, const Range& range, double seconds)
+void WorkList::done(size_t device, int items, double seconds)
 {
     const std::lock_guard lock(mutex_);
     DevicePace& pace = paces_[device];
-    const double now = double(range.count) * paths_per_item_ / std::max(seconds, 1e-9);
+    const double now = double(items) * paths_per_item_ / std::max(seconds, 1e-9);
     pace.per_second = pace.per_second > 0 ? 0.5 * (pace.per_second + now) : now;
-    running_count_ -= range.count;
+    running_count_ -= items;
     changed_.notify_all();
 }
 
-void WorkList::give_back(size_t device, const Range& range)
+void WorkList::forget(int items)
+{
+    const std::lock_guard lock(mutex_);
+    running_count_ -= items;
+    changed_.notify_all();
+}
+
+void WorkList::give_back(size_t device, std::span<const Range> ranges)
 {
     const std::lock_guard lock(mutex_);
     paces_[device].lives = false;
-    left_.push_back(range);
-    left_count_ += range.count;
-    running_count_ -= range.count;
+    for (const Range& range : ranges) {
+        left_.push_back(range);
+        left_count_ += range.count;
+        running_count_ -= range.count;
+    }
     changed_.notify_all();
 }
 
@@ -91,6 +130,18 @@ int WorkList::missing() const
 {
     const std::lock_guard lock(mutex_);
     return left_count_ + running_count_;
+}
+
+int WorkList::left() const
+{
+    const std::lock_guard lock(mutex_);
+    return left_count_;
+}
+
+bool WorkList::has_devices() const
+{
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(paces_, &DevicePace::lives);
 }
 
 }  // namespace diptych

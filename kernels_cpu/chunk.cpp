@@ -122,7 +122,6 @@ void Chunk::run(const PathView& results, int first_item, int items)
                 run_stage(STAGE_accumulate_aovs, items << shift);
         }
         view_.planes = planes_.data();
-        paths += std::uint64_t(count);
         for (WorkItem& part : parts) part.first_sample += at_once;
     }
 }

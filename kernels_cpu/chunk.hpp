@@ -45,7 +45,6 @@ public:
     std::uint64_t rays = 0;
     std::uint64_t shadow_rays = 0;
     std::uint64_t undecided_rays = 0;
-    std::uint64_t paths = 0;
     // Over all bounces: lanes of packets, and those of them with a live path.
     std::uint64_t slot_steps = 0;
     std::uint64_t busy_steps = 0;

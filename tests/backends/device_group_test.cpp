@@ -154,6 +154,74 @@ TEST(DeviceGroup, ThrowsWhenNoDeviceIsLeft)
     EXPECT_EQ(group.notices.size(), 2u);
 }
 
+std::vector<WorkItem> items_of(const SceneData& scene, int quanta)
+{
+    const Settings& picture = scene.settings[0];
+    std::vector<WorkItem> items;
+    for (int q = 0; q < quanta; ++q)
+        for (const Pixel& corner : blocks_of(picture.width, picture.height, BLOCK_SHIFT))
+            items.push_back({corner.x, corner.y, q * QUANTUM, 0});
+    return items;
+}
+
+// The red sums of each item.
+void append_items(std::vector<std::vector<float>>& red, const Results& results, int items)
+{
+    const size_t entries = size_t(1) << (2 * BLOCK_SHIFT);
+    for (size_t k = 0; k < size_t(items); ++k) {
+        const auto first = results.sum_radiance.begin() + std::ptrdiff_t(k * entries);
+        red.emplace_back(first, first + std::ptrdiff_t(entries));
+    }
+}
+
+TEST(DeviceGroup, LeavesADispatchAndGoesOnWithIt)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::vector<WorkItem> items = items_of(scene, 4);
+    const std::unique_ptr<Backend> cpu = make_backend("cpu", {});
+    cpu->upload(scene);
+    Results results;
+    std::vector<std::vector<float>> expected, red;
+    cpu->render({items}, results);
+    append_items(expected, results, int(items.size()));
+
+    Group group({0, 0, 0});
+    group.backend->upload(scene);
+    int times_left = 0;
+    for (size_t first = 0; first < items.size();) {
+        const std::span<const WorkItem> rest = std::span(items).subspan(first);
+        const size_t listed = std::min<size_t>(rest.size(), 20);
+        int asked = 0;
+        const auto wish = [&] { return ++asked > 1 ? Wish::leave : Wish::go_on; };
+        const int done =
+            group.backend->advance({rest.first(listed)}, {rest.size() - listed, wish}, results);
+        ASSERT_LE(size_t(done), listed);
+        append_items(red, results, done);
+        first += size_t(done);
+        times_left += size_t(done) < listed ? 1 : 0;
+    }
+    EXPECT_EQ(red, expected);
+    EXPECT_GT(times_left, 0) << "every dispatch was over before it could be left";
+    EXPECT_EQ(group.backend->statistics().paths, 72u * 40 * 4 * QUANTUM);
+}
+
+TEST(DeviceGroup, FinishesWhatItHasBegunAndNothingElse)
+{
+    SceneData scene = busy_scene(72, 40);
+    const std::vector<WorkItem> items = items_of(scene, 64);
+    Group group({0, 0});
+    group.backend->upload(scene);
+    Results results;
+    std::vector<std::vector<float>> expected, red;
+    const int done = group.backend->advance({items}, {0, [] { return Wish::finish; }}, results);
+    ASSERT_GT(done, 0);
+    ASSERT_LT(size_t(done), items.size() / 2);
+    append_items(red, results, done);
+    group.backend->render({std::span(items).first(size_t(done))}, results);
+    append_items(expected, results, done);
+    EXPECT_EQ(red, expected);
+}
+
 TEST(DeviceGroup, AnUpdateThatTheFirstRefusesChangesNone)
 {
     SceneData scene = busy_scene(16, 16);

@@ -28,7 +28,7 @@ public:
         double now = 0;
         while (list.missing() > 0) {
             for (size_t d = 0; d < speeds_.size(); ++d)
-                if (!running[d] && (running[d] = list.take_now(d))) {
+                if (!running[d] && (running[d] = list.take_now(d, paces_[d].most))) {
                     EXPECT_LE(running[d]->count, paces_[d].most);
                     end[d] = now + running[d]->count / speeds_[d];
                 }
@@ -40,7 +40,7 @@ public:
             now = end[next];
             for (int k = 0; k < range.count; ++k) ++rendered[size_t(range.first + k)];
             taken[next] += range.count;
-            list.done(next, range, range.count / speeds_[next]);
+            list.done(next, range.count, range.count / speeds_[next]);
             running[next].reset();
         }
         for (const int times : rendered) ASSERT_EQ(times, 1);
@@ -90,12 +90,33 @@ TEST(WorkList, ItemsOfADeviceThatFailsAreForTheOthers)
     std::vector<DevicePace> paces(2);
     for (DevicePace& pace : paces) pace.most = 100;
     WorkList list(30, 1, paces);
-    const Range lost = *list.take_now(0);
-    list.give_back(0, lost);
+    const Range lost = *list.take_now(0, 100);
+    list.give_back(0, {&lost, 1});
     EXPECT_EQ(list.missing(), 30);
-    EXPECT_FALSE(list.take_now(0));
-    while (const std::optional<Range> range = list.take(1)) list.done(1, *range, 1);
+    EXPECT_FALSE(list.take_now(0, 100));
+    while (list.missing() > 0) list.done(1, list.take(1, 4)->count, 1);
+    list.close();
+    EXPECT_FALSE(list.take(1, 4));
+}
+
+TEST(WorkList, GrowsAtItsEndAndIsCutOffBehindWhatSomebodyHas)
+{
+    std::vector<DevicePace> paces(2);
+    for (DevicePace& pace : paces) pace.most = 4;
+    WorkList list(4, 1, paces);
+    const Range first = *list.take_now(0, 4);
+    list.append(6);
+    const Range second = *list.take_now(1, 2);
+    EXPECT_EQ(second.first, first.count);
+    list.give_back(0, {&first, 1});
+    EXPECT_EQ(list.left(), 10 - second.count);
+    EXPECT_EQ(list.cut_off(), second.first + second.count);
+    EXPECT_EQ(list.left(), first.count) << "what came back is still to be rendered";
+    while (list.left() > 0) list.done(1, list.take(1, 4)->count, 1);
+    list.forget(second.count);
     EXPECT_EQ(list.missing(), 0);
+    list.append(1);
+    EXPECT_EQ(list.take(1, 4)->first, second.first + second.count);
 }
 
 }  // namespace
