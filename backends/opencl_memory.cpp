@@ -84,7 +84,8 @@ void check_allocation(const DeviceInfo& device, int shift, const std::string& na
         throw std::runtime_error(
             "opencl: " + device.name + ": the scene's " + name + " need " + amount(bytes) +
             ", the device allocates at most " + amount(device.largest_allocation) + " at once" +
-            (is_large(name) ? ", of which " + std::to_string(LARGE_PAGES) + " can be used" : "") +
+            (is_large(name) ? "; " + std::to_string(LARGE_PAGES) + " pages hold " + amount(room)
+                            : "") +
             "; simplify the scene or use --backend cpu");
 }
 

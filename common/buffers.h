@@ -28,17 +28,20 @@
 
 // Those of them that may be larger than a device allocates at once: read through
 // ROW_AT(scene, name, index) alone. X(element type, name, log2 of its bytes)
-#define LARGE_BUFFERS(X)        \
-    X(float4, positions, 4)     \
-    X(uint, normals, 2)         \
-    X(uint, tangents, 2)        \
-    X(float2, uvs, 3)           \
-    X(float4, colors, 4)        \
-    X(Triangle, triangles, 4)   \
-    X(int, triangle_objects, 2) \
-    X(uint, texels_8, 2)        \
-    X(float4, texels_float, 4)  \
-    X(BvhNode, bvh_nodes, 6)    \
+#define LARGE_BUFFERS(X)           \
+    X(float4, positions, 4)        \
+    X(uint, normals, 2)            \
+    X(uint, tangents, 2)           \
+    X(float2, uvs, 3)              \
+    X(float4, colors, 4)           \
+    X(Triangle, triangles, 4)      \
+    X(int, triangle_objects, 2)    \
+    X(Instance, instances, 7)      \
+    X(uint, texels_8, 2)           \
+    X(float4, texels_float, 4)     \
+    X(Light, lights, 7)            \
+    X(AliasEntry, light_choice, 4) \
+    X(BvhNode, bvh_nodes, 6)       \
     X(int, bvh_items, 2)
 #define LARGE_PAGES 4  // of each, at most; the dialect of OpenCL names them one by one
 

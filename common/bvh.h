@@ -70,7 +70,7 @@ SHARED BvhRay bvh_ray(float3 origin, float3 direction)
 // The direction keeps the length that the transformation gives it, and t its meaning.
 SHARED BvhRay bvh_object_ray(const Scene* scene, int instance, float3 o, float3 d)
 {
-    const STORED(Instance) m = scene->instances[instance];
+    const STORED(Instance) m = ROW_AT(scene, instances, instance);
     const float3 origin = make_float3(
         m.to_object_x.x * o.x + m.to_object_x.y * o.y + m.to_object_x.z * o.z + m.to_object_x.w,
         m.to_object_y.x * o.x + m.to_object_y.y * o.y + m.to_object_y.z * o.z + m.to_object_y.w,
@@ -189,7 +189,7 @@ SHARED Hit bvh_walk(const Scene* scene, float3 origin, float3 direction, float t
     int instance = 0;
     BvhRay ray = bvh_ray(origin, direction);
     Hit best = {t_max, -1, -1};
-    int next = uses(scene, EFFECT_INSTANCES) ? 0 : scene->instances[0].root_node;
+    int next = uses(scene, EFFECT_INSTANCES) ? 0 : ROW_AT(scene, instances, 0).root_node;
 
     while (next != BVH_NONE) {
         if (next >= 0) {
@@ -204,7 +204,7 @@ SHARED Hit bvh_walk(const Scene* scene, float3 origin, float3 direction, float t
             instance = ROW_AT(scene, bvh_items, BVH_LEAF_FIRST(next));
             ray = bvh_object_ray(scene, instance, origin, direction);
             base = size;
-            next = scene->instances[instance].root_node;
+            next = ROW_AT(scene, instances, instance).root_node;
         } else {
             best = bvh_leaf(scene, &ray, next, best, instance, alpha);
             next = BVH_NONE;

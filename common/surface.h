@@ -18,44 +18,45 @@ typedef struct {
 
 SHARED float3 point_to_world(const Scene* scene, int instance, float3 p)
 {
-    return make_float3(
-        scene->instances[instance].to_world_x.x * p.x +
-            scene->instances[instance].to_world_x.y * p.y +
-            scene->instances[instance].to_world_x.z * p.z + scene->instances[instance].to_world_x.w,
-        scene->instances[instance].to_world_y.x * p.x +
-            scene->instances[instance].to_world_y.y * p.y +
-            scene->instances[instance].to_world_y.z * p.z + scene->instances[instance].to_world_y.w,
-        scene->instances[instance].to_world_z.x * p.x +
-            scene->instances[instance].to_world_z.y * p.y +
-            scene->instances[instance].to_world_z.z * p.z +
-            scene->instances[instance].to_world_z.w);
+    return make_float3(ROW_AT(scene, instances, instance).to_world_x.x * p.x +
+                           ROW_AT(scene, instances, instance).to_world_x.y * p.y +
+                           ROW_AT(scene, instances, instance).to_world_x.z * p.z +
+                           ROW_AT(scene, instances, instance).to_world_x.w,
+                       ROW_AT(scene, instances, instance).to_world_y.x * p.x +
+                           ROW_AT(scene, instances, instance).to_world_y.y * p.y +
+                           ROW_AT(scene, instances, instance).to_world_y.z * p.z +
+                           ROW_AT(scene, instances, instance).to_world_y.w,
+                       ROW_AT(scene, instances, instance).to_world_z.x * p.x +
+                           ROW_AT(scene, instances, instance).to_world_z.y * p.y +
+                           ROW_AT(scene, instances, instance).to_world_z.z * p.z +
+                           ROW_AT(scene, instances, instance).to_world_z.w);
 }
 
 SHARED float3 vector_to_world(const Scene* scene, int instance, float3 v)
 {
-    return make_float3(scene->instances[instance].to_world_x.x * v.x +
-                           scene->instances[instance].to_world_x.y * v.y +
-                           scene->instances[instance].to_world_x.z * v.z,
-                       scene->instances[instance].to_world_y.x * v.x +
-                           scene->instances[instance].to_world_y.y * v.y +
-                           scene->instances[instance].to_world_y.z * v.z,
-                       scene->instances[instance].to_world_z.x * v.x +
-                           scene->instances[instance].to_world_z.y * v.y +
-                           scene->instances[instance].to_world_z.z * v.z);
+    return make_float3(ROW_AT(scene, instances, instance).to_world_x.x * v.x +
+                           ROW_AT(scene, instances, instance).to_world_x.y * v.y +
+                           ROW_AT(scene, instances, instance).to_world_x.z * v.z,
+                       ROW_AT(scene, instances, instance).to_world_y.x * v.x +
+                           ROW_AT(scene, instances, instance).to_world_y.y * v.y +
+                           ROW_AT(scene, instances, instance).to_world_y.z * v.z,
+                       ROW_AT(scene, instances, instance).to_world_z.x * v.x +
+                           ROW_AT(scene, instances, instance).to_world_z.y * v.y +
+                           ROW_AT(scene, instances, instance).to_world_z.z * v.z);
 }
 
 // Normals go by the transpose of the inverse; not of unit length any more.
 SHARED float3 normal_to_world(const Scene* scene, int instance, float3 n)
 {
-    return make_float3(scene->instances[instance].to_object_x.x * n.x +
-                           scene->instances[instance].to_object_y.x * n.y +
-                           scene->instances[instance].to_object_z.x * n.z,
-                       scene->instances[instance].to_object_x.y * n.x +
-                           scene->instances[instance].to_object_y.y * n.y +
-                           scene->instances[instance].to_object_z.y * n.z,
-                       scene->instances[instance].to_object_x.z * n.x +
-                           scene->instances[instance].to_object_y.z * n.y +
-                           scene->instances[instance].to_object_z.z * n.z);
+    return make_float3(ROW_AT(scene, instances, instance).to_object_x.x * n.x +
+                           ROW_AT(scene, instances, instance).to_object_y.x * n.y +
+                           ROW_AT(scene, instances, instance).to_object_z.x * n.z,
+                       ROW_AT(scene, instances, instance).to_object_x.y * n.x +
+                           ROW_AT(scene, instances, instance).to_object_y.y * n.y +
+                           ROW_AT(scene, instances, instance).to_object_z.y * n.z,
+                       ROW_AT(scene, instances, instance).to_object_x.z * n.x +
+                           ROW_AT(scene, instances, instance).to_object_y.z * n.y +
+                           ROW_AT(scene, instances, instance).to_object_z.z * n.z);
 }
 
 SHARED float3 vertex_position(const Scene* scene, int vertex)
@@ -74,9 +75,9 @@ SHARED WorldTriangle world_triangle(const Scene* scene, int instance, int triang
         a = point_to_world(scene, instance, a);
         b = point_to_world(scene, instance, b);
         c = point_to_world(scene, instance, c);
-        const float x = math_abs(scene->instances[instance].to_world_x.w);
-        const float y = math_abs(scene->instances[instance].to_world_y.w);
-        const float z = math_abs(scene->instances[instance].to_world_z.w);
+        const float x = math_abs(ROW_AT(scene, instances, instance).to_world_x.w);
+        const float y = math_abs(ROW_AT(scene, instances, instance).to_world_y.w);
+        const float z = math_abs(ROW_AT(scene, instances, instance).to_world_z.w);
         translation = vec_max_component(make_float3(x, y, z));
     }
     WorldTriangle world;
@@ -243,7 +244,7 @@ SHARED float3 surface_mapped_normal(const Scene* scene, int instance, int triang
     const uint packed = ROW_AT(scene, tangents, ROW_AT(scene, triangles, triangle).vertex0);
     float handedness = (packed & 1u) != 0u ? -1.0f : 1.0f;
     if (uses(scene, EFFECT_INSTANCES))  // a mirror image of a right-handed frame is left-handed
-        handedness = scene->instances[instance].is_mirrored ? -handedness : handedness;
+        handedness = ROW_AT(scene, instances, instance).is_mirrored ? -handedness : handedness;
     const float3 tangent = t * (t_length2 > 0.0f ? 1.0f / math_sqrt(t_length2) : 0.0f);
     const float3 bitangent = vec_cross(n, tangent) * handedness;
 

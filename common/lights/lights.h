@@ -12,8 +12,8 @@ SHARED int light_choose(const Scene* scene, float2 u)
     const int scaled = (int)(u.x * (float)count);
     const int last = count - 1 + (count == 0);  // nothing lies at 0 where there are no lights
     const int drawn = scaled > last ? last : scaled;
-    const int alias = scene->light_choice[drawn].alias;
-    const float threshold = scene->light_choice[drawn].threshold;
+    const int alias = ROW_AT(scene, light_choice, drawn).alias;
+    const float threshold = ROW_AT(scene, light_choice, drawn).threshold;
     const int mask = u.y < threshold ? 0 : -1;  // bits, not a select, which would select addresses
     return drawn ^ ((drawn ^ alias) & mask);
 }
@@ -37,7 +37,7 @@ SHARED LightSample light_sample_select(int is_second, LightSample a, LightSample
 // nothing.
 SHARED LightSample light_sample(const Scene* scene, int light, float3 from, float2 u)
 {
-    const int kind = scene->lights[light].kind;
+    const int kind = ROW_AT(scene, lights, light).kind;
     LightSample sample;
     sample.direction = make_float3(0.0f, 0.0f, 1.0f);
     sample.distance = FLOAT_MAX;

@@ -16,15 +16,16 @@ SHARED float range_window(float distance, float range)
 
 SHARED LightSample punctual_light_sample(const Scene* scene, int light, float3 from)
 {
-    const int kind = scene->lights[light].kind;
-    const float3 position =
-        make_float3(scene->lights[light].position.x, scene->lights[light].position.y,
-                    scene->lights[light].position.z);
-    const float3 axis = make_float3(scene->lights[light].edge1.x, scene->lights[light].edge1.y,
-                                    scene->lights[light].edge1.z);
-    const float3 emission =
-        make_float3(scene->lights[light].emission.x, scene->lights[light].emission.y,
-                    scene->lights[light].emission.z);
+    const int kind = ROW_AT(scene, lights, light).kind;
+    const float3 position = make_float3(ROW_AT(scene, lights, light).position.x,
+                                        ROW_AT(scene, lights, light).position.y,
+                                        ROW_AT(scene, lights, light).position.z);
+    const float3 axis =
+        make_float3(ROW_AT(scene, lights, light).edge1.x, ROW_AT(scene, lights, light).edge1.y,
+                    ROW_AT(scene, lights, light).edge1.z);
+    const float3 emission = make_float3(ROW_AT(scene, lights, light).emission.x,
+                                        ROW_AT(scene, lights, light).emission.y,
+                                        ROW_AT(scene, lights, light).emission.z);
     const float3 towards = position - from;
     const float distance2 = vec_dot(towards, towards);
     const float distance = math_sqrt(distance2);
@@ -32,11 +33,12 @@ SHARED LightSample punctual_light_sample(const Scene* scene, int light, float3 f
     const float3 unit = towards * inverse;
 
     const float cosine = -vec_dot(unit, axis);
-    const float ramp = math_clamp(
-        (cosine - scene->lights[light].edge2.x) * scene->lights[light].edge2.y, 0.0f, 1.0f);
+    const float ramp = math_clamp((cosine - ROW_AT(scene, lights, light).edge2.x) *
+                                      ROW_AT(scene, lights, light).edge2.y,
+                                  0.0f, 1.0f);
     const float cone = kind == LIGHT_SPOT ? ramp * ramp : 1.0f;
     const float falloff =
-        inverse * inverse * cone * range_window(distance, scene->lights[light].range);
+        inverse * inverse * cone * range_window(distance, ROW_AT(scene, lights, light).range);
 
     const int is_far = kind == LIGHT_DIRECTIONAL;
     const float strength = is_far ? 1.0f : falloff;
@@ -45,7 +47,7 @@ SHARED LightSample punctual_light_sample(const Scene* scene, int light, float3 f
                                    is_far ? -axis.z : unit.z);
     sample.distance = is_far ? FLOAT_MAX : distance;
     sample.radiance = emission * strength;
-    sample.pdf = scene->lights[light].emission.w;
+    sample.pdf = ROW_AT(scene, lights, light).emission.w;
     sample.is_punctual = 1;
     return sample;
 }

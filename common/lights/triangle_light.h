@@ -16,13 +16,15 @@ SHARED float2 triangle_sample(float2 u)
 
 SHARED LightSample triangle_light_sample(const Scene* scene, int light, float3 from, float2 u)
 {
-    const float3 corner =
-        make_float3(scene->lights[light].position.x, scene->lights[light].position.y,
-                    scene->lights[light].position.z);
-    const float3 edge1 = make_float3(scene->lights[light].edge1.x, scene->lights[light].edge1.y,
-                                     scene->lights[light].edge1.z);
-    const float3 edge2 = make_float3(scene->lights[light].edge2.x, scene->lights[light].edge2.y,
-                                     scene->lights[light].edge2.z);
+    const float3 corner = make_float3(ROW_AT(scene, lights, light).position.x,
+                                      ROW_AT(scene, lights, light).position.y,
+                                      ROW_AT(scene, lights, light).position.z);
+    const float3 edge1 =
+        make_float3(ROW_AT(scene, lights, light).edge1.x, ROW_AT(scene, lights, light).edge1.y,
+                    ROW_AT(scene, lights, light).edge1.z);
+    const float3 edge2 =
+        make_float3(ROW_AT(scene, lights, light).edge2.x, ROW_AT(scene, lights, light).edge2.y,
+                    ROW_AT(scene, lights, light).edge2.z);
     const float2 weights = triangle_sample(u);
     const float3 normal = vec_cross(edge1, edge2);  // length: twice the area
     const float length = vec_length(normal);
@@ -38,12 +40,14 @@ SHARED LightSample triangle_light_sample(const Scene* scene, int light, float3 f
     const float distance2 = vec_dot(towards, towards);
     const float distance = math_sqrt(distance2);
     const float3 direction = towards * (distance > 0.0f ? 1.0f / distance : 0.0f);
-    const float cosine = -vec_dot(unit_normal, direction) * scene->lights[light].normal_sign;
+    const float cosine =
+        -vec_dot(unit_normal, direction) * ROW_AT(scene, lights, light).normal_sign;
 
-    float3 radiance = make_float3(scene->lights[light].emission.x, scene->lights[light].emission.y,
-                                  scene->lights[light].emission.z);
+    float3 radiance = make_float3(ROW_AT(scene, lights, light).emission.x,
+                                  ROW_AT(scene, lights, light).emission.y,
+                                  ROW_AT(scene, lights, light).emission.z);
     if (uses(scene, EFFECT_EMISSION_TEXTURE)) {
-        const int triangle = scene->lights[light].triangle;
+        const int triangle = ROW_AT(scene, lights, light).triangle;
         const int material = ROW_AT(scene, triangles, triangle).material;
         const int slot = scene->materials[material].emission_slot;
         const float4 texel = surface_texture(scene, triangle, weights, slot);
@@ -51,7 +55,7 @@ SHARED LightSample triangle_light_sample(const Scene* scene, int light, float3 f
                                scene->materials[material].emission.y * texel.y,
                                scene->materials[material].emission.z * texel.z);
     }
-    const float area_pdf = scene->lights[light].emission.w * 2.0f / length;
+    const float area_pdf = ROW_AT(scene, lights, light).emission.w * 2.0f / length;
     const int is_visible = (cosine > 0.0f) & (distance > 0.0f);
     LightSample sample;
     sample.direction = direction;

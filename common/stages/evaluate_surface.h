@@ -108,7 +108,7 @@ SHARED void evaluate_surface(const Scene* scene, const Paths* paths, int i)
     const float cross2 = vec_dot(cross, cross);
     float3 outside = cross * (cross2 > 0.0f ? 1.0f / math_sqrt(cross2) : 0.0f);
     if (uses(scene, EFFECT_INSTANCES)) {
-        const int is_mirrored = scene->instances[instance].is_mirrored;
+        const int is_mirrored = ROW_AT(scene, instances, instance).is_mirrored;
         outside = select3(is_mirrored, -outside, outside);
     }
     const float3 view = -direction;

@@ -14,7 +14,7 @@ SHARED void record_features(const Scene* scene, const Paths* paths, int i)
     const int instance = get_hit_instance(paths, i) & -is_hit;
     const int is_merged = -(is_hit & (instance == 0));
     const int merged = ROW_AT(scene, triangle_objects, triangle & is_merged);
-    const int placed = scene->instances[instance].object;
+    const int placed = ROW_AT(scene, instances, instance).object;
     const int object = placed ^ ((placed ^ merged) & is_merged);
     const float3 none = make_float3(0.0f, 0.0f, 0.0f);
     const float3 towards = get_position(paths, i) - get_ray_origin(paths, i);

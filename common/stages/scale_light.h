@@ -8,9 +8,9 @@
 SHARED void record_light(const Scene* scene, const Paths* paths, int i, int light,
                          float3 contribution)
 {
-    const int is_triangle = scene->lights[light].kind == LIGHT_TRIANGLE;
-    const int triangle = scene->lights[light].triangle;
-    const int instance = scene->lights[light].instance;
+    const int is_triangle = ROW_AT(scene, lights, light).kind == LIGHT_TRIANGLE;
+    const int triangle = ROW_AT(scene, lights, light).triangle;
+    const int instance = ROW_AT(scene, lights, light).instance;
     const int program = scene->materials[ROW_AT(scene, triangles, triangle).material]
                             .texture_program[PROGRAM_EMISSION];
     const int is_asked = is_triangle & (program != 0) & (vec_max_component(contribution) > 0.0f);

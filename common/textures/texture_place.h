@@ -50,7 +50,7 @@ SHARED TexturePlace texture_place(const Scene* scene, const Paths* paths, int i)
     const float cross2 = vec_dot(cross, cross);
     float3 outside = cross * (cross2 > 0.0f ? 1.0f / math_sqrt(cross2) : 0.0f);
     if (uses(scene, EFFECT_INSTANCES)) {
-        const float sign = scene->instances[place.instance].is_mirrored ? -1.0f : 1.0f;
+        const float sign = ROW_AT(scene, instances, place.instance).is_mirrored ? -1.0f : 1.0f;
         outside = outside * sign;
     }
     place.face_normal = outside;
@@ -80,7 +80,7 @@ SHARED TextureFrame texture_frame(const Scene* scene, int instance, int triangle
     const uint packed = ROW_AT(scene, tangents, ROW_AT(scene, triangles, triangle).vertex0);
     float handedness = (packed & 1u) != 0u ? -1.0f : 1.0f;
     if (uses(scene, EFFECT_INSTANCES))
-        handedness = scene->instances[instance].is_mirrored ? -handedness : handedness;
+        handedness = ROW_AT(scene, instances, instance).is_mirrored ? -handedness : handedness;
     const float3 any = frame_tangent(n);
     TextureFrame frame;
     frame.tangent =
@@ -95,7 +95,7 @@ SHARED int texture_object(const Scene* scene, int instance, int triangle)
 {
     const int is_merged = -(instance == 0);
     const int merged = ROW_AT(scene, triangle_objects, triangle & is_merged);
-    const int placed = scene->instances[instance].object;
+    const int placed = ROW_AT(scene, instances, instance).object;
     return placed ^ ((placed ^ merged) & is_merged);
 }
 

@@ -355,7 +355,8 @@ TEST_F(OpenclBackendTest, RendersTheSameInSmallAllocations)
     });
 }
 
-// A ball of many triangles with a picture on it, whose texels begin after `before` others.
+// A ball of many triangles with a picture on it, whose texels begin after `before` others, under a
+// lamp of many, on many copies of a tile.
 SceneData painted_ball(size_t before)
 {
     Picture picture{160, 160, {}, {}, true, 0};
@@ -365,7 +366,10 @@ SceneData painted_ball(size_t before)
     const int paint = builder.add_material({.base_texture = {.image = image}});
     const int lamp = builder.add_material({.emission = {5, 5, 5}});
     builder.place(builder.add_mesh(sphere_mesh({0, 0, 0}, 1, 72, paint)));
-    builder.place(builder.add_mesh(quad_mesh({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, lamp)));
+    builder.place(builder.add_mesh(sphere_mesh({0, 2, 0}, 0.5, 32, lamp)));
+    const int tile = builder.add_mesh(quad_mesh({-1.5, -1, -1.5}, {0, 0, 0.1}, {0.1, 0, 0}, paint));
+    for (int k = 0; k < 900; ++k)
+        builder.place(tile, translation(0.1 * (k % 30), 0, 0.1 * (k / 30)));
     builder.set_camera({.eye = {0, 1, 3}, .target = {0, 0, 0}});
     builder.set_picture_size(32, 32);
     SceneData scene = builder.finish();
@@ -383,6 +387,8 @@ TEST_F(OpenclBackendTest, RendersTheSameFromPages)
         EXPECT_GT(scene.triangles.size() * sizeof(Triangle), 1u << 16);
         EXPECT_GT(scene.bvh_nodes.size() * sizeof(BvhNode), 2u << 16);
         EXPECT_GT(scene.texels_8.size() * sizeof(uint), 1u << 16);
+        EXPECT_GT(scene.lights.size() * sizeof(Light), 1u << 16);
+        EXPECT_GT(scene.instances.size() * sizeof(Instance), 1u << 16);
         const NarrowDevice limit(100'000);
         on_each_device({}, [&](Backend& narrow) {
             EXPECT_TRUE(is_same(expected, render(narrow, scene, blocks(scene), QUANTUM)));
@@ -412,14 +418,17 @@ TEST_F(OpenclBackendTest, RefusesByNumbersWhatIsTooLargeForItsAllocations)
     on_each_device({}, [&](Backend& backend) {
         const std::string message = message_of([&] { backend.plan(scene); });
         EXPECT_NE(message.find("texels_8 need 5120 KiB"), std::string::npos) << message;
-        EXPECT_NE(message.find("at most 1024 KiB at once, of which 4"), std::string::npos)
+        EXPECT_NE(message.find("at most 1024 KiB at once; 4 pages hold 4096 KiB; simplify"),
+                  std::string::npos)
             << message;
         scene.texels_8.resize((4u << 20) / sizeof(uint));
         EXPECT_EQ(message_of([&] { backend.plan(scene); }), "");
-        scene.lights.resize((2u << 20) / sizeof(Light));
-        const std::string lights = message_of([&] { backend.plan(scene); });
-        EXPECT_NE(lights.find("lights need 2048 KiB"), std::string::npos) << lights;
-        scene.lights.resize(1);
+        const std::vector<Material> materials = scene.materials;
+        scene.materials.resize((2u << 20) / sizeof(Material));
+        const std::string whole = message_of([&] { backend.plan(scene); });
+        EXPECT_NE(whole.find("materials need 2048 KiB"), std::string::npos) << whole;
+        EXPECT_NE(whole.find("at most 1024 KiB at once; simplify"), std::string::npos) << whole;
+        scene.materials = materials;
     });
 }
 
