@@ -65,3 +65,10 @@ SHARED float mis_weight(float a, float b)
     const float weight = 1.0f / (1.0f + ratio * ratio);
     return a > 0.0f ? weight : 0.0f;
 }
+
+// Balance heuristic, for the environment: what its samples leave to scattering is chosen for it.
+SHARED float mis_balance_weight(float a, float b)
+{
+    const float weight = 1.0f / (1.0f + b / a);
+    return a > 0.0f ? weight : 0.0f;
+}

@@ -22,7 +22,7 @@ SHARED void add_emission(const Scene* scene, const Paths* paths, int i)
         const float2 uv =
             environment_uv(direction_to_environment(scene, get_ray_direction(paths, i)));
         const float pdf = scene->settings[0].environment_probability * environment_pdf(scene, uv);
-        const float weight = mis_weight(scatter_pdf, pdf);
+        const float weight = mis_balance_weight(scatter_pdf, pdf);
         const float share = is_alone ? 1.0f : weight;
         light = select3(kind == SURFACE_NONE, environment_radiance(scene, uv) * share, light);
     }

@@ -42,7 +42,13 @@ SHARED void sample_light(const Scene* scene, const Paths* paths, int i)
     } else {
         scatter = diffuse_evaluate(get_base_color(paths, i), wi);
     }
-    const float weight = mis_weight(sample.pdf, scatter.pdf);
+    const float power_weight = mis_weight(sample.pdf, scatter.pdf);
+    float weight = power_weight;
+    if (uses(scene, EFFECT_ENVIRONMENT)) {
+        const int is_environment = light == scene->settings[0].environment_light;
+        const float balance_weight = mis_balance_weight(sample.pdf, scatter.pdf);
+        weight = is_environment ? balance_weight : power_weight;
+    }
     const float share = sample.is_punctual ? 1.0f : weight;
     const float inverse = sample.pdf > 0.0f ? share / sample.pdf : 0.0f;
     const float3 contribution =

@@ -292,9 +292,12 @@ TEST(Lights, WeightsOfTwoTechniquesAddUpToOne)
 {
     for (const float a : {1e-20f, 1e-3f, 1.0f, 7.0f, 1e20f})
         for (const float b : {1e-20f, 1e-3f, 1.0f, 7.0f, 1e20f})
-            EXPECT_NEAR(mis_weight(a, b) + mis_weight(b, a), 1, 1e-6) << a << " " << b;
-    EXPECT_EQ(mis_weight(0, 1), 0);
-    EXPECT_EQ(mis_weight(1, 0), 1);
+            for (const auto weight : {mis_weight, mis_balance_weight})
+                EXPECT_NEAR(weight(a, b) + weight(b, a), 1, 1e-6) << a << " " << b;
+    for (const auto weight : {mis_weight, mis_balance_weight}) {
+        EXPECT_EQ(weight(0, 1), 0);
+        EXPECT_EQ(weight(1, 0), 1);
+    }
 }
 
 }  // namespace
