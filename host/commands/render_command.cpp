@@ -5,6 +5,7 @@
 #include "host/commands/progress_pictures.hpp"
 #include "host/commands/render_report.hpp"
 #include "host/commands/texture_capture.hpp"
+#include "host/render/host_memory.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -47,17 +48,21 @@ void expect_all_different(const RenderCommand& command)
             throw std::runtime_error(name + ": is named for two outputs; give each its own file");
 }
 
-// Before anything is allocated.
-void check_film_fits(const SceneData& scene, const RenderOptions& options)
+// Before anything is allocated. Files are encoded in memory, one after the other: layers about as
+// large as they are.
+void check_film_fits(const RenderCommand& command, const SceneData& scene,
+                     const RenderOptions& options)
 {
     const Settings& settings = scene.settings[0];
-    const size_t needed = film_bytes(scene, options);
-    const size_t there = size_t(sysconf(_SC_PHYS_PAGES)) * size_t(sysconf(_SC_PAGE_SIZE));
+    const size_t picture = picture_bytes(scene, options);
+    const bool has_layers = std::ranges::any_of(command.outputs, image::holds_layers);
+    const size_t needed = film_bytes(scene, options) + picture * (has_layers ? 2 : 1);
+    const size_t there = host_memory_left();
     if (needed > there)
-        throw std::runtime_error(
-            fmt::format("--size: the film of {} x {} pixels needs {} MiB, this machine has {} MiB; "
-                        "render a smaller picture, or --one-sequence without --error",
-                        settings.width, settings.height, needed >> 20, there >> 20));
+        throw std::runtime_error(fmt::format(
+            "--size: the film of {} x {} pixels and the picture made of it need {} MiB, there are "
+            "{} MiB; render a smaller picture, or --one-sequence without --error",
+            settings.width, settings.height, needed >> 20, there >> 20));
 }
 
 // On a terminal one line that counts, else one at the beginning.
@@ -248,7 +253,7 @@ int run_render_command(const RenderCommand& command)
         make_backend(run.device.backend, options_from_flags(run.device));
     SceneData scene = load_from_flags(run.scene, is_adaptive(options));
     add_generated_notices(scene, run.device);
-    check_film_fits(scene, options);
+    check_film_fits(run, scene, options);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
     std::optional<RenderState> start =
         checkpoint.begin(scene, options, run.device.backend, *backend, run.is_quiet);

@@ -84,10 +84,11 @@ void print_plan(const SceneData& scene, const Backend& backend, const Plan& plan
     fmt::print(
         stderr,
         "memory: geometry {}, textures {}, structure about {}, paths {} ({} at once), film {} "
-        "in blocks; film {} on the host\n",
+        "in blocks; on the host film {}, picture {}\n",
         megabytes(plan.scene_bytes), megabytes(plan.texture_bytes), megabytes(plan.structure_bytes),
         megabytes(plan.path_bytes), plan.items * QUANTUM << (2 * BLOCK_SHIFT),
-        megabytes(plan.film_bytes), megabytes(film_bytes(scene, options)));
+        megabytes(plan.film_bytes), megabytes(film_bytes(scene, options)),
+        megabytes(picture_bytes(scene, options)));
 }
 
 ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -196,7 +197,8 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
           {"planned", result.plan.bytes()},
           {"allocated", statistics.allocated_bytes},
           {"film", Film::bytes(result.film.data().window, result.film.data().batches,
-                               result.film.data().aovs.size())}}},
+                               result.film.data().aovs.size())},
+          {"picture", picture_bytes(scene, options)}}},
         {"dispatch_paths", result.plan.items * QUANTUM << (2 * BLOCK_SHIFT)},
         {"effects", effect_names(scene.effects)},
         {"degenerate_triangles", scene.degenerate_triangles},

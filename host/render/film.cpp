@@ -79,6 +79,12 @@ size_t Film::bytes(const Window& window, int batches, size_t aovs)
     return window.pixels() * (of_batch * size_t(batches) + of_pixel);
 }
 
+size_t Film::picture_bytes(size_t pixels, int batches, size_t aovs)
+{
+    const size_t of_errors = batches == batch_count ? 6 : 0;  // standard, predicted, its squares
+    return pixels * sizeof(float) * (4 + 3 + 3 + 1 + 3 + of_errors + 4 * aovs);
+}
+
 size_t Film::pixel_at(int x, int y) const
 {
     const Window& window = data_.window;

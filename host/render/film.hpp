@@ -94,6 +94,8 @@ public:
     // Beauty (alpha = coverage), albedo, normal, depth, object and material id, sample count, with
     // batches standard error, and the texture nodes. Pixels without samples are black.
     image::Picture picture() const;
+    // What the values of such a picture take, of so many pixels.
+    static size_t picture_bytes(size_t pixels, int batches, size_t aovs = 0);
     bool has_standard_error() const { return data_.batches == batch_count; }
 
 private:

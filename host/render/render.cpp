@@ -385,6 +385,13 @@ size_t film_bytes(const SceneData& scene, const RenderOptions& options)
                        scene.textures.aovs.size());
 }
 
+size_t picture_bytes(const SceneData& scene, const RenderOptions& options)
+{
+    const Settings& settings = scene.settings.at(0);
+    return Film::picture_bytes(size_t(settings.width) * size_t(settings.height),
+                               film_batches(settings, options), scene.textures.aovs.size());
+}
+
 RenderState fresh_state(const SceneData& scene, const RenderOptions& options)
 {
     const Settings& settings = scene.settings.at(0);

@@ -78,6 +78,9 @@ BlockGrid error_grid(const Settings& settings);
 // What the film will take on the host.
 size_t film_bytes(const SceneData& scene, const RenderOptions& options);
 
+// What the picture that is made of it at the end will take beside it.
+size_t picture_bytes(const SceneData& scene, const RenderOptions& options);
+
 // The state in which a render with these options begins: nothing rendered.
 RenderState fresh_state(const SceneData& scene, const RenderOptions& options);
 
