@@ -3,6 +3,7 @@
 #include "backends/textures/texture_tool.hpp"
 #include "host/scene/gltf_document.hpp"
 #include "host/scene/texture_arguments.hpp"
+#include "host/scene/texture_graph.hpp"
 #include "host/scene/uri.hpp"
 
 #include "platform.h"
@@ -388,15 +389,9 @@ Edit LiveScene::set_value(const std::string& text)
     const auto change = [&]() -> Edit {
         const TextureValue set = parse_texture_value(text, printable(text));
         const auto& nodes = data_->textures.nodes;
-        const auto node = std::ranges::find(nodes, set.node, &TextureNodeValues::name);
-        if (node == nodes.end()) {
-            std::vector<std::string> names;
-            for (const TextureNodeValues& other : nodes) names.push_back(printable(other.name));
-            if (names.size() > 8) names.resize(8);
-            throw SceneError(fmt::format("{}: names no texture node; there are {}: {}",
-                                         printable(text), nodes.size(), fmt::join(names, ", ")));
-        }
-        if (!node->values.contains(set.argument)) return set_new_value(*node, text);
+        const TextureNodeValues& node =
+            nodes[size_t(texture_node_named(set.node, nodes, printable(text)))];
+        if (!node.values.contains(set.argument)) return set_new_value(node, text);
         put(values_, set, text);
         Edit edit;
         std::string reason;

@@ -135,23 +135,6 @@ public:
         return defaults_.at(function);
     }
 
-    int node_named(const json& name, const std::string& where) const
-    {
-        if (name.is_number_unsigned() && name.get<std::uint64_t>() < entries_.size())
-            return name.get<int>();
-        if (name.is_string()) {
-            const auto at = std::ranges::find(entries_, name.get<std::string>(), &Entry::name);
-            if (at != entries_.end()) return int(at - entries_.begin());
-        }
-        if (entries_.empty())
-            fail(where, printable(name.dump()) + " names no texture node; the scene has none");
-        std::vector<std::string> names;
-        for (const Entry& entry : entries_) names.push_back(entry.name);
-        if (names.size() > 8) names.resize(8);
-        fail(where, fmt::format("{} names no texture node; there are {}: {}",
-                                printable(name.dump()), entries_.size(), fmt::join(names, ", ")));
-    }
-
 private:
     fs::path source_file(const json& source, const std::string& where) const
     {
@@ -235,7 +218,7 @@ private:
             expect_object(use, where + "." + key, {"node", "extras"});
             if (!use.contains("node")) fail(where + "." + key, "its node is missing; name one");
             set_node(materials_[size_t(m)], at->use,
-                     node_named(use["node"], where + "." + key + ".node"));
+                     texture_node_named(use["node"], entries_, where + "." + key + ".node"));
         }
     }
 
@@ -305,7 +288,8 @@ private:
     {
         const std::string where = "--set " + printable(flag);
         const TextureValue set = parse_texture_value(flag, where);
-        entries_[size_t(node_named(set.node, where))].arguments[set.argument] = set.value;
+        entries_[size_t(texture_node_named(set.node, entries_, where))].arguments[set.argument] =
+            set.value;
     }
 
     GltfDocument& document_;
@@ -339,7 +323,7 @@ TextureInput GltfLoader::texture_input(const nlohmann::json& value, const Textur
         }
     } else if (value.is_object() && value.contains("node")) {
         expect_object(value, where, {"node"});
-        input.node = reader.node_named(value["node"], where);
+        input.node = texture_node_named(value["node"], reader.entries(), where);
     } else {
         expect_object(value, where, {"texture", "colorSpace"});
         const json texture = value.value("texture", json());

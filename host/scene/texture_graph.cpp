@@ -1,10 +1,11 @@
 #include "host/scene/texture_graph.hpp"
 
+#include "host/scene/texture_arguments.hpp"
 #include "host/scene/uri.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <functional>
+#include <ranges>
 
 namespace diptych {
 namespace {
@@ -61,19 +62,16 @@ std::vector<int> texture_inputs(const TextureNode& node)
     return inputs;
 }
 
-int texture_node_named(const std::string& name, const std::vector<TextureNode>& nodes,
-                       const char* flag)
+void refuse_texture_node(const nlohmann::json& name, const std::vector<std::string>& nodes,
+                         const std::string& where)
 {
-    const auto at = std::ranges::find(nodes, name, &TextureNode::name);
-    if (at != nodes.end()) return int(at - nodes.begin());
-    if (nodes.empty())
-        throw SceneError(fmt::format("{} {}: the scene has no texture node; add one with --texture",
-                                     flag, printable(name)));
+    const std::string what =
+        fmt::format("{}: {} names no texture node; ", where, printable(dumped(name)));
+    if (nodes.empty()) throw SceneError(what + "the scene has none; add one with --texture");
     std::vector<std::string> names;
-    for (const TextureNode& node : nodes) names.push_back(printable(node.name));
-    if (names.size() > 8) names.resize(8);
-    throw SceneError(fmt::format("{} {}: no such texture node; there are {}: {}; name one of these",
-                                 flag, printable(name), nodes.size(), fmt::join(names, ", ")));
+    for (const std::string& node : nodes | std::views::take(8)) names.push_back(printable(node));
+    throw SceneError(what + fmt::format("there are {}: {}; name one of these", nodes.size(),
+                                        fmt::join(names, ", ")));
 }
 
 void check_texture_graph(const std::vector<TextureNode>& nodes)

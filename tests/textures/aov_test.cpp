@@ -218,7 +218,7 @@ TEST_F(AovCommandLine, AnUnknownNodeIsRefusedWithTheNamesThereAre)
 {
     const Outcome unknown = render({"scene.gltf", "--aov", "paint", "--aov", "pint"});
     EXPECT_EQ(unknown.exit_code, 2);
-    EXPECT_NE(unknown.err.find("--aov pint: no such texture node; there are 6: left, paint, "
+    EXPECT_NE(unknown.err.find("--aov: \"pint\" names no texture node; there are 6: left, paint, "
                                "height, both, pole, open; name one of these"),
               std::string::npos)
         << unknown.err;

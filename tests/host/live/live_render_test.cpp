@@ -201,8 +201,8 @@ TEST_P(LiveScenes, AFailedEditKeepsThePictureUntilAGoodOne)
     EXPECT_NE(warned_[0].find(": error: "), std::string::npos) << warned_[0];
     EXPECT_NE(warned_[1].find("scene.gltf:2:"), std::string::npos) << warned_[1];
     EXPECT_NE(warned_[2].find("argument scale is of type float, but has 2"), std::string::npos);
-    EXPECT_NE(warned_[3].find("names no texture node; there are 2: left, paint"),
-              std::string::npos);
+    EXPECT_EQ(warned_[3], "nothing.scale=1: \"nothing\" names no texture node; there are 2: left, "
+                          "paint; name one of these");
     EXPECT_NE(warned_[4].find("not JSON"), std::string::npos) << warned_[4];
     ASSERT_EQ(pictures_.size(), 4u);
     EXPECT_NE(pictures_[1], pictures_[0]);  // the value was taken beside the broken text

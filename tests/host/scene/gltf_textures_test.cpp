@@ -308,7 +308,7 @@ const Hostile hostile[] = {
      [](json& e) {
          e["nodes"][1]["arguments"]["inner"] = {{"node", "depth"}};
      },
-     "\"depth\" names no texture node; there are 2: level, paint"},
+     "\"depth\" names no texture node; there are 2: level, paint; name one of these"},
     {"node out of range",
      [](json& e) {
          e["nodes"][1]["arguments"]["inner"] = {{"node", 2}};
