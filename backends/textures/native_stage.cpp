@@ -30,9 +30,17 @@ constexpr const char* entry_name = "diptych_evaluate_textures";
 constexpr const char* watch_name = "diptych_watch_textures";
 std::atomic<unsigned long> compilations{0};
 
-// Of a compiler over one texture; a second and 300 MiB are usual.
-constexpr int most_seconds = 120;
-constexpr int most_gibibytes = 4;
+constexpr int most_gibibytes = 4;  // of a compiler over one texture; 300 MiB are usual
+
+// With the messages of a compiler, which name lines.
+struct RefusedCode : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+struct Compiler {
+    std::string program;
+    int most_seconds;
+};
 
 // A name that no other thread or process has, beside the file that it becomes.
 fs::path unfinished(const fs::path& file)
@@ -62,8 +70,7 @@ bool is_compiler_chosen()
     return chosen && *chosen;
 }
 
-// What the compiler is and what -march=native means to it.
-std::string compiler()
+std::string compiler_program()
 {
     if (is_compiler_chosen()) {
         const std::string chosen = std::getenv("DIPTYCH_CXX");
@@ -245,8 +252,9 @@ fs::path headers()
                                        "DIPTYCH_CXX");
 }
 
-// Runs the compiler, and keeps what it makes with its digest.
-void make(std::vector<std::string> command, const fs::path& object, const fs::path& functions)
+// Runs a compiler's command, and keeps what it makes with its digest.
+void make(std::vector<std::string> command, int most_seconds, const fs::path& object,
+          const fs::path& functions)
 {
     fs::create_directories(object.parent_path());
     const fs::path part = unfinished(object);
@@ -262,9 +270,8 @@ void make(std::vector<std::string> command, const fs::path& object, const fs::pa
                                      functions.string() + "; make that texture's code shorter");
         if (done.exit_code == 0 || done.output.empty())
             fail_without_message(command[0], done.exit_code);
-        throw std::runtime_error("procedural textures: " + command[0] +
-                                 " refuses the generated code (" + functions.string() + "):\n" +
-                                 done.output);
+        throw RefusedCode("procedural textures: " + command[0] + " refuses the generated code (" +
+                          functions.string() + "):\n" + done.output);
     }
     Sha256 hash;
     hash.add(made);
@@ -272,18 +279,18 @@ void make(std::vector<std::string> command, const fs::path& object, const fs::pa
     fs::rename(part, object);
 }
 
-void compile(const std::string& program, const Source& source, const fs::path& root,
+void compile(const Compiler& compiler, const Source& source, const fs::path& root,
              const fs::path& object)
 {
     const fs::path functions = object.parent_path() / "functions.hpp";
     write_text(functions, with_generated_lines_of(source.functions, functions));
-    std::vector<std::string> command = {program};
+    std::vector<std::string> command = {compiler.program};
     command.insert(command.end(), source.flags.begin(), source.flags.end());
     command.insert(command.end(),
                    {"-I" + root.string(), "-I" + (root / "common" / source.dialect).string(),
                     "-I" + object.parent_path().string(),
                     "-DTEXTURE_FUNCTIONS_FILE=\"functions.hpp\"", (root / source.file).string()});
-    make(command, object, functions);
+    make(command, compiler.most_seconds, object, functions);
 }
 
 // Calls work(0) to work(count - 1), as many at a time as there are processors; throws what one
@@ -320,20 +327,20 @@ std::vector<Source> sources_in_lanes(const SceneData& scene, const CppTextures& 
     return sources;
 }
 
-void compile_lanes(const std::string& program, const std::vector<Source>& sources,
+void compile_lanes(const Compiler& compiler, const std::vector<Source>& sources,
                    const fs::path& root, const fs::path& object)
 {
     std::vector<std::string> objects(sources.size());
     for_each_at_once(sources.size(), [&](size_t k) {
-        const fs::path made =
-            cache_folder() / "textures" / "objects" / key_of(program, sources[k]) / "part.o";
-        if (!is_whole(made)) compile(program, sources[k], root, made);
+        const fs::path made = cache_folder() / "textures" / "objects" /
+                              key_of(compiler.program, sources[k]) / "part.o";
+        if (!is_whole(made)) compile(compiler, sources[k], root, made);
         objects[k] = made.string();
     });
-    std::vector<std::string> command = {program, "-shared"};
+    std::vector<std::string> command = {compiler.program, "-shared"};
     command.insert(command.end(), sanitizers.begin(), sanitizers.end());
     command.insert(command.end(), objects.begin(), objects.end());
-    make(command, object, object.parent_path() / "functions.hpp");
+    make(command, compiler.most_seconds, object, object.parent_path() / "functions.hpp");
 }
 
 }  // namespace
@@ -343,27 +350,28 @@ void count_texture_compilation() { ++compilations; }
 
 NativeStage::NativeStage(const SceneData& scene, const NativeStageOptions& options)
 {
-    const std::string program = compiler();
+    const Compiler compiler{compiler_program(), options.most_seconds};
     std::vector<std::string> flags = flags_for(options);
-    if (is_in_lanes(options)) add_flags_of_gcc(program, flags);
+    if (is_in_lanes(options)) add_flags_of_gcc(compiler.program, flags);
     const CppTextures textures =
         cpp_textures(scene, {options.generated_dir, options.use_generated});
     const char* dialect = options.kind == NativeStageKind::reference ? "as_double" : "as_cpp";
     Source whole{"kernels_cpu/texture_stage.cpp", dialect, textures.all, flags};
     whole.flags.push_back("-shared");
-    const fs::path object = cache_folder() / "textures" / key_of(program, whole) / "stage.so";
+    const fs::path object =
+        cache_folder() / "textures" / key_of(compiler.program, whole) / "stage.so";
     if (!is_whole(object)) {
         const fs::path root = headers();
         const auto compile_to = [&](const fs::path& made, const CppTextures& texts) {
             whole.functions = texts.all;
             if (is_in_lanes(options))
-                compile_lanes(program, sources_in_lanes(scene, texts, flags), root, made);
+                compile_lanes(compiler, sources_in_lanes(scene, texts, flags), root, made);
             else
-                compile(program, whole, root, made);
+                compile(compiler, whole, root, made);
         };
         try {
             compile_to(object, textures);
-        } catch (const std::runtime_error&) {
+        } catch (const RefusedCode&) {
             if (options.use_generated.empty()) throw;
             // once more, for a message that names lines of the edited copy
             compile_to(object.string() + ".copy",

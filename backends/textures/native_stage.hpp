@@ -17,9 +17,10 @@ enum class NativeStageKind { vector, scalar, reference, silent };
 
 struct NativeStageOptions {
     NativeStageKind kind = NativeStageKind::scalar;
-    bool is_debug = false;      // not optimised; the same bits
-    std::string generated_dir;  // also write the generated code there
-    std::string use_generated;  // compile the (edited) code that lies there instead
+    bool is_debug = false;        // not optimised; the same bits
+    std::string generated_dir{};  // also write the generated code there
+    std::string use_generated{};  // compile the (edited) code that lies there instead
+    int most_seconds = 120;       // of the compiler over one texture; one is usual
 };
 
 // A loaded stage. Its code stays as long as this lives.

@@ -12,8 +12,8 @@ namespace diptych {
 
 // Where people find the generated code, and change it. Empty: nowhere.
 struct GeneratedFolders {
-    std::string write;  // functions.hpp (C++) and functions.cl (OpenCL) are written there too
-    std::string use;    // and taken from here, instead of what was generated
+    std::string write{};  // functions.hpp (C++) and functions.cl (OpenCL) are written there too
+    std::string use{};    // and taken from here, instead of what was generated
     bool has_own_lines = false;  // compilers name lines of the file in `use`, not of users' files
 };
 

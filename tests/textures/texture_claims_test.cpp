@@ -1,6 +1,7 @@
 // What textures may reach, and what a new one costs: claims TX-2 and TX-14 of the paper.
 #include "backends/textures/native_stage.hpp"
 #include "backends/textures/subprocess.hpp"
+#include "backends/textures/texture_source.hpp"
 #include "common/as_cpp/texture_rows.hpp"
 #include "host/commands/trace_comparison.hpp"
 #include "host/render/render.hpp"
@@ -9,6 +10,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <unistd.h>
 
@@ -111,26 +113,36 @@ TEST_P(TextureClaims, TX_2_OnlyWhatASurfaceIsLikeIsProgrammable)
                       << result.first->a << " and " << result.first->b;
 }
 
+// A variable of the environment, as long as this lives.
+class OwnVariable {
+public:
+    OwnVariable(const char* name, const std::string& value) : name_(name)
+    {
+        if (const char* before = std::getenv(name)) before_ = before;
+        setenv(name, value.c_str(), 1);
+    }
+    ~OwnVariable() { before_.empty() ? unsetenv(name_) : setenv(name_, before_.c_str(), 1); }
+    OwnVariable(const OwnVariable&) = delete;
+    OwnVariable& operator=(const OwnVariable&) = delete;
+
+private:
+    const char* name_;
+    std::string before_;
+};
+
 // A cache folder of the test's own: what is compiled leaves a file or a folder there.
 class OwnCache {
 public:
-    OwnCache() : folder_(fs::temp_directory_path() / ("texture-claims-" + std::to_string(getpid())))
-    {
-        const char* before = std::getenv("DIPTYCH_CACHE_DIR");
-        if (before) before_ = before;
-        fs::remove_all(folder_);
-        setenv("DIPTYCH_CACHE_DIR", folder_.c_str(), 1);
-    }
+    OwnCache() { fs::remove_all(folder_); }
     ~OwnCache()
     {
-        before_.empty() ? unsetenv("DIPTYCH_CACHE_DIR")
-                        : setenv("DIPTYCH_CACHE_DIR", before_.c_str(), 1);
         std::error_code ignored;
         fs::remove_all(folder_, ignored);
     }
     OwnCache(const OwnCache&) = delete;
     OwnCache& operator=(const OwnCache&) = delete;
 
+    const fs::path& folder() const { return folder_; }
     // Programs of OpenCL and texture stages of the host, by name.
     std::set<std::string> compiled() const
     {
@@ -149,8 +161,9 @@ public:
     }
 
 private:
-    fs::path folder_;
-    std::string before_;
+    const fs::path folder_ =
+        fs::temp_directory_path() / ("texture-claims-" + std::to_string(getpid()));
+    const OwnVariable chosen_{"DIPTYCH_CACHE_DIR", folder_};
 };
 
 // The program that runs here was built before any of these texts: each new one is compiled when it
@@ -205,6 +218,43 @@ TEST(TextureCompilers, EndWhenTheyTakeTooLongOrTooMuch)
     const Finished words = run_program_within(1, 1, {"echo", "$(id) '\"\\", "a;b"});
     EXPECT_EQ(words.output, "$(id) '\"\\ a;b\n");
     EXPECT_EQ(words.exit_code, 0);
+}
+
+// Once more with other names of lines is for compilers that named some.
+TEST(TextureCompilers, RunOnceMoreOverAnEditedCopyForAMessageAlone)
+{
+    SceneBuilder scene;
+    TextureUse use;
+    use.node = scene.add_texture_node(
+        {"grey", scene.add_texture_function(textures::handwritten("t0", {}, level("0.5f"))), {}});
+    const SceneData data = corner(scene, {.base_texture = use});
+    const auto said_and_runs = [&](const std::string& script) {
+        const OwnCache cache;
+        const fs::path runs = cache.folder() / "runs";
+        const fs::path compiler = cache.folder() / "compiler";
+        fs::create_directories(cache.folder());
+        std::ofstream(compiler) << "#!/bin/sh\necho >> " << runs.string() << "\n" << script << "\n";
+        fs::permissions(compiler, fs::perms::owner_all);
+        const std::string code = cache.folder() / "code";
+        cpp_textures(data, {.write = code});
+        const OwnVariable chosen("DIPTYCH_CXX", compiler.string());
+        std::string said;
+        try {
+            NativeStage(data, {.use_generated = code, .most_seconds = 1});
+        } catch (const std::runtime_error& error) {
+            said = error.what();
+        }
+        return std::pair(said, fs::exists(runs) ? fs::file_size(runs) : 0);
+    };
+    const auto [stopped, runs_until_stopped] = said_and_runs("while :; do :; done");
+    EXPECT_NE(stopped.find("was stopped after 1 s over"), std::string::npos) << stopped;
+    EXPECT_EQ(runs_until_stopped, 1u);
+    const auto [silent, runs_of_silent] = said_and_runs("exit 1");
+    EXPECT_NE(silent.find("without a message"), std::string::npos) << silent;
+    EXPECT_EQ(runs_of_silent, 1u);
+    const auto [refused, runs_until_refused] = said_and_runs("echo here: error; exit 1");
+    EXPECT_NE(refused.find("here: error"), std::string::npos) << refused;
+    EXPECT_EQ(runs_until_refused, 2u);
 }
 
 // In lanes each function is a loop of its own, in two forms: an edit leaves those of others alone.
