@@ -137,14 +137,14 @@ TextureTiming time_on(const std::string& name, const TextureFile& file,
         backend->upload(empty);
         timing.stage_nanoseconds = stage_times(*backend, empty).evaluation;
     } catch (const std::runtime_error& error) {
-        const std::string text = error.what();
-        timing.failure = text.substr(0, text.find('\n'));
+        timing.failure = first_line(error.what());
     }
     return timing;
 }
 
 std::string difference_text(const TextureTiming& timing)
 {
+    if (!timing.no_reference.empty()) return "not compared: " + timing.no_reference;
     if (timing.backend == reference || timing.compared == 0) return "-";
     if (timing.differing == 0) return "none, bit for bit";
     return fmt::format("{:.2g} ({} of {} differ)", timing.largest_difference, timing.differing,
@@ -169,6 +169,8 @@ std::vector<std::string> names_from(const std::string& list)
 
 }  // namespace
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 std::vector<TextureTiming> time_texture(const TextureFile& file,
                                         const std::vector<std::string>& values,
                                         const std::vector<std::string>& backends,
@@ -178,16 +180,20 @@ std::vector<TextureTiming> time_texture(const TextureFile& file,
     const TextureFile constant = constant_texture(folder);
     SceneData scene = scene_of(file, values);
     std::vector<float> wanted;
+    std::string no_reference;
     try {
         const std::unique_ptr<Backend> twin = make_backend(reference, options);
         twin->upload(scene);
         wanted = values_of(*twin, scene);
-    } catch (const std::runtime_error&) {  // a machine without a compiler measures OpenCL alone
+    } catch (const std::runtime_error& error) {  // as on a machine without a compiler
         if (std::ranges::count(backends, "opencl") != std::ssize(backends)) throw;
+        no_reference = first_line(error.what());
     }
     std::vector<TextureTiming> timings;
-    for (const std::string& name : backends)
+    for (const std::string& name : backends) {
         timings.push_back(time_on(name, file, values, constant, options, wanted));
+        timings.back().no_reference = no_reference;
+    }
     return timings;
 }
 

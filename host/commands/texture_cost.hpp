@@ -18,7 +18,8 @@ struct TextureTiming {
     double largest_difference = 0;  // of a component, to twin
     size_t differing = 0;           // evaluations that are not bit for bit twin's
     size_t compared = 0;
-    std::string failure;  // why there is no measurement; empty: there is one
+    std::string failure;       // why there is no measurement; empty: there is one
+    std::string no_reference;  // why twin's values are not there to compare with; empty: they are
 };
 
 // Each backend on one thread (OpenCL: the device's time). Throws std::runtime_error for a texture
@@ -51,6 +52,8 @@ DeviceCosts device_costs(const SceneData& scene, int most_registers = 0);
 DeviceCost ptxas_cost(const std::string& target, const std::string& log);
 // The same for the OpenCL device in use, from its own compiler; none: it is not one of NVIDIA's.
 std::optional<DeviceCost> driver_cost(const SceneData& scene, const BackendOptions& options);
+
+std::string first_line(const std::string& text);  // of a compiler's words
 
 // All of it as text. `backends`: names with commas, or empty for all.
 std::string cost_card(const TextureFile& file, const std::vector<std::string>& values,

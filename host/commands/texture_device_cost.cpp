@@ -88,8 +88,6 @@ int largest(const std::string& text, const char* pattern)
     return value;
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 // The size of the section of machine code in what ptxas writes, an ELF file of 64 bits.
 int code_bytes(const std::string& elf)
 {

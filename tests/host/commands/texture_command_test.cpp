@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <set>
 
 using namespace diptych;
@@ -29,10 +30,12 @@ float3 shaded(float scale, float3 tint, const float* weights)
 class TextureCommandLine : public testing::Test {
 protected:
     TextureCommandLine() { folder_.write("shaded.c", shaded); }
-    Outcome texture(std::vector<std::string> words) const
+    Outcome texture(std::vector<std::string> words,
+                    std::map<std::string, std::string> environment = {}) const
     {
         words.insert(words.begin(), "texture");
-        return run_diptych(words, {.seconds = 200, .folder = folder_.path()});
+        return run_diptych(words,
+                           {.seconds = 200, .environment = environment, .folder = folder_.path()});
     }
     image::Picture preview(std::vector<std::string> more) const
     {
@@ -149,6 +152,33 @@ TEST_F(TextureCommandLine, CostMeasuresBackendsAndComparesTheirValues)
     EXPECT_NE(outcome.out.find("sm_80"), std::string::npos) << outcome.out;
     EXPECT_NE(outcome.out.find("gfx900"), std::string::npos) << outcome.out;
     EXPECT_EQ(texture({"cost", "shaded.c", "--backends", "abacus"}).exit_code, 2);
+}
+
+// OpenCL is measured without twin, and the card says for what reason it has nothing to compare to.
+TEST_F(TextureCommandLine, CostSaysWhyTwinGivesNoValues)
+{
+    const auto row = [&](const std::map<std::string, std::string>& environment) {
+        const Outcome outcome = texture({"cost", "shaded.c", "--backends", "opencl"}, environment);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        const size_t at = outcome.out.find("\nopencl ");
+        return at == std::string::npos
+                   ? outcome.text()
+                   : outcome.out.substr(at + 1, outcome.out.find('\n', at + 1) - at - 1);
+    };
+    const std::string compared = row({});
+    if (compared.find("not measured: ") != std::string::npos) GTEST_SKIP() << compared;
+    EXPECT_TRUE(compared.ends_with("none, bit for bit")) << compared;
+    for (const auto& [environment, wanted] :
+         {std::pair<std::map<std::string, std::string>, std::string>{
+              {{"PATH", folder_ / "empty"}},
+              "procedural textures: no C++ compiler (g++, c++ or clang++) on the PATH, and this "
+              "backend needs one; install it, set DIPTYCH_CXX, or use --backend opencl"},
+          {{{"DIPTYCH_CXX", "/bin/false"}},
+           "DIPTYCH_CXX: /bin/false: ends with exit code 1 and without a message of the generated "
+           "code; name a C++20 compiler, or unset it"}}) {
+        const std::string alone = row(environment);
+        EXPECT_TRUE(alone.ends_with("  not compared: " + wanted)) << alone;
+    }
 }
 
 // As the texture computes it at the middle of a pixel: see painted_source.
