@@ -23,13 +23,12 @@ std::string fault_option(const std::string& fault)
     return " -D FAULT=FAULT_" + (fault.empty() ? "none" : fault);
 }
 
-std::string source_for(Stage stage, const BackendOptions& options, const SceneData& scene,
-                       bool has_own_lines = false)
+std::string source_for(Stage stage, const BackendOptions& options, const SceneData& scene)
 {
     std::string source = kernel_source(stage);
     if (stage == STAGE_evaluate_textures)
-        source = opencl_texture_program(
-            scene, source, {options.generated_dir, options.use_generated, has_own_lines});
+        source =
+            opencl_texture_program(scene, source, {options.generated_dir, options.use_generated});
     const std::string exact = "FP_CONTRACT OFF";
     const size_t at = source.find(exact);
     if (options.fast_math && at != std::string::npos)
@@ -73,17 +72,8 @@ Built build(const opencl::Context& context, const DeviceInfo& device, const std:
 Built build_stage(const opencl::Context& context, const DeviceInfo& device, Stage stage,
                   const BackendOptions& options, const SceneData& scene, const ProgramCache& cache)
 {
-    const std::string flags = program_options(device, options, scene);
-    try {
-        return build(context, device, source_for(stage, options, scene), flags, stage_names[stage],
-                     cache);
-    } catch (const std::runtime_error&) {
-        if (stage != STAGE_evaluate_textures || options.use_generated.empty()) throw;
-        // once more, for a message that names lines of the edited copy
-        build(context, device, source_for(stage, options, scene, true), flags, stage_names[stage],
-              cache);
-        throw;
-    }
+    return build(context, device, source_for(stage, options, scene),
+                 program_options(device, options, scene), stage_names[stage], cache);
 }
 
 void store(const Built& built, Stage stage, ProgramCache& cache)

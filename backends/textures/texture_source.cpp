@@ -132,8 +132,15 @@ std::string through_folders(const std::string& text, const std::string& name,
             ": its first line does not name the textures of this scene and what they take; write "
             "it anew with --generated-dir " +
             folders.use + ", and keep that line");
-    if (!folders.has_own_lines) return own;
-    return line_directive(1, file) + with_lines(own, "#line ", [](size_t) { return "\n"; });
+    return own;
+}
+
+// The text of an edited copy, its lines named as its own and not as users': for messages.
+std::string with_lines_of_copy(const std::string& text, const std::string& name,
+                               const GeneratedFolders& folders)
+{
+    return line_directive(1, std::filesystem::path(folders.use) / name) +
+           with_lines(text, "#line ", [](size_t) { return "\n"; });
 }
 
 }  // namespace
@@ -148,6 +155,7 @@ CppTextures cpp_textures(const SceneData& scene, const GeneratedFolders& folders
     for (const TextureFunction& function : scene.textures.functions)
         textures.all += function.cpp + "\n";
     textures.all = through_folders(textures.all + textures.definitions, cpp_name, scene, folders);
+    if (folders.has_own_lines) textures.all = with_lines_of_copy(textures.all, cpp_name, folders);
     const bool stand_alone = folders.use.empty() && !scene.textures.is_one_text;
     for (const TextureFunction& function : scene.textures.functions)
         textures.functions.push_back(stand_alone ? function.cpp + "\n" + line +
@@ -198,6 +206,9 @@ std::string opencl_texture_program(const SceneData& scene, const std::string& st
     std::string text;
     for (const TextureFunction& function : scene.textures.functions) text += function.opencl + "\n";
     text = through_folders(text + definitions(scene), opencl_name, scene, folders);
+    // No debugger reads users' lines here, at most a texture does.
+    if (!folders.use.empty() && text.find("__LINE__") == std::string::npos)
+        text = with_lines_of_copy(text, opencl_name, folders);
     const auto line = std::count(stage.begin(), stage.begin() + long(at), '\n');
     text += "#line " + std::to_string(line + 2) + " \"evaluate_textures (flattened)\"\n";
     return std::string(stage).replace(at, place.size(), text);

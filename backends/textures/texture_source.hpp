@@ -14,7 +14,7 @@ namespace diptych {
 struct GeneratedFolders {
     std::string write{};  // functions.hpp (C++) and functions.cl (OpenCL) are written there too
     std::string use{};    // and taken from here, instead of what was generated
-    bool has_own_lines = false;  // compilers name lines of the file in `use`, not of users' files
+    bool has_own_lines = false;  // C++: the lines are named of that file, not of users' files
 };
 
 struct CppTextures {

@@ -89,6 +89,18 @@ TEST_P(GeneratedCode, OtherTexturesAreRefused)
     EXPECT_EQ(refused.err_lines().size(), 1u) << refused.err;
 }
 
+TEST_P(GeneratedCode, ACopyThatComputesWithItsLinesHasThoseOfTheTexture)
+{
+    if (!is_usable()) GTEST_SKIP() << "no OpenCL device";
+    std::string source = painted_source;
+    folder_.write("paint.c", source.replace(source.find("0.25f"), 5, "0.1f * (float)__LINE__"));
+    const std::string code = folder_ / "code";
+    const Outcome made = render({"--generated-dir", code}, "a.exr");
+    ASSERT_EQ(made.exit_code, 0) << made.text();
+    ASSERT_EQ(render({"--use-generated", code}, "b.exr").exit_code, 0);
+    EXPECT_EQ(pixels("a.exr"), pixels("b.exr"));
+}
+
 // It runs on as it was edited, but not without a word.
 TEST_P(GeneratedCode, ACopyOlderThanAnEditOfTheTextureIsNamed)
 {
@@ -142,6 +154,8 @@ TEST_P(GeneratedCode, AnErrorInAnEditedCopyNamesItsLine)
         << refused.err;
     EXPECT_EQ(refused.err.find("paint.c"), std::string::npos) << refused.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "b.exr"));
+    const std::string count = " error generated.";  // PoCL's word, if any
+    EXPECT_EQ(refused.err.find(count), refused.err.rfind(count)) << refused.err;
 }
 
 // The panels part: one needs a compiler when it runs, the other brings its own.
