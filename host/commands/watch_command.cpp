@@ -147,9 +147,9 @@ int run_watch_command(const WatchCommand& command)
     set_targets(run.error, run.scene.samples, aims);
 
     WatchSession session(run, aims, write);
-    const auto load = [&](const std::vector<std::string>& values) {
+    const auto load = [&](const std::vector<std::string>& typed) {
         SceneFlags flags = run.scene;
-        flags.load.texture_values = values;
+        flags.load.typed_values = typed;
         SceneData scene = load_from_flags(flags, is_adaptive(aims));
         add_generated_notices(scene, run.device);
         return scene;

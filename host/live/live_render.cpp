@@ -1,5 +1,7 @@
 #include "host/live/live_render.hpp"
 
+#include "host/scene/uri.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <utility>
@@ -140,7 +142,7 @@ void LiveRender::apply(const Requests& requests)
             has_told_error_ = false;
             hooks_.watch_files(scene_.files(), scene_.read_at());
         } catch (const std::runtime_error& error) {
-            hooks_.warn(error.what());
+            warn(error.what());
         }
     }
     if (requests.changed.empty()) return;
@@ -188,6 +190,13 @@ void LiveRender::begin_again(const Edit& edit, Clock::time_point since)
     if (edit.kind == EditKind::textures) edit_ += ": texture stage made anew";
 }
 
+void LiveRender::warn(const std::string& message)
+{
+    hooks_.warn(message);
+    for (const std::string& value : scene_.waiting())
+        hooks_.tell(printable(value) + " waits for a save that is taken");
+}
+
 void LiveRender::hold(const std::string& message)
 {
     if (held_.empty()) held_since_ = Clock::now();
@@ -196,7 +205,7 @@ void LiveRender::hold(const std::string& message)
 
 void LiveRender::tell_held_message()
 {
-    hooks_.warn(held_);
+    warn(held_);
     has_told_error_ = true;
     held_.clear();
 }

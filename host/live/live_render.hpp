@@ -58,6 +58,7 @@ private:
     void serve(double wait_seconds);
     void apply(const Requests& requests);
     void follow(const Edit& edit);
+    void warn(const std::string& message);
     void hold(const std::string& message);
     void tell_held_message();
     void show(const Film& film, const RenderResult* end);

@@ -2,7 +2,6 @@
 
 #include "backends/textures/texture_tool.hpp"
 #include "host/scene/gltf_document.hpp"
-#include "host/scene/texture_arguments.hpp"
 #include "host/scene/texture_graph.hpp"
 #include "host/scene/uri.hpp"
 
@@ -138,7 +137,7 @@ LiveScene::LiveScene(fs::path file, std::vector<fs::path> more, std::vector<std:
                      Loader load)
     : file_(std::move(file)), more_(std::move(more)), values_(std::move(values)),
       load_(std::move(load)), text_(read_text(file_)),
-      data_(std::make_unique<SceneData>(load_(values_)))
+      data_(std::make_unique<SceneData>(load_(typed_)))
 {
 }
 
@@ -191,7 +190,7 @@ bool LiveScene::is_texture(const fs::path& file) const
 template<class Change>
 Edit LiveScene::attempt(Change change)
 {
-    before_ = {text_, values_, nullptr, data_->textures, {}};
+    before_ = {text_, typed_, nullptr, data_->textures, {}};
     try {
         Edit edit = change();
         has_failed_ = false;
@@ -209,15 +208,16 @@ Edit LiveScene::reload(const std::string& why)
     read_at_ = fs::file_time_type::clock::now();
     text_ = read_text(file_);
     attempted_ = text_.files;
-    std::ranges::move(std::exchange(waiting_, {}), std::back_inserter(values_));
-    auto fresh = std::make_unique<SceneData>(load_(values_));
+    auto fresh = std::make_unique<SceneData>(load_(typed_));
     std::vector<std::string> news;
     std::ranges::copy_if(fresh->notices, std::back_inserter(news), [&](const std::string& line) {
         return std::ranges::find(data_->notices, line) == data_->notices.end();
     });
     before_.data = std::move(data_);
     data_ = std::move(fresh);
-    return {EditKind::scene, why + ": the whole scene is loaded again", std::move(news)};
+    Edit edit{EditKind::scene, why + ": the whole scene is loaded again", std::move(news)};
+    drop_waiting(edit);
+    return edit;
 }
 
 Edit LiveScene::look_again(const std::vector<fs::path>& changed)
@@ -238,7 +238,7 @@ Edit LiveScene::look_again(const std::vector<fs::path>& changed)
         std::string reason;
         if (!translate_again(changed, edit, reason) || !update_values(edit, reason))
             return reload(reason);
-        waiting_.clear();  // no file wants them any more
+        drop_waiting(edit);
         return edit;
     });
 }
@@ -279,13 +279,13 @@ json LiveScene::values_of(size_t k) const
 {
     const TextureNodeValues& node = data_->textures.nodes[k];
     json values = k < text_.arguments.size() ? text_.arguments[k] : json::object();
-    for (const std::string& text : values_) {
+    const auto put_in = [&](const std::string& text, bool is_typed) {
         const TextureValue set = parse_texture_value(text, "--set " + printable(text));
-        const auto named =
-            std::ranges::find(data_->textures.nodes, set.node, &TextureNodeValues::name);
-        if (named == data_->textures.nodes.begin() + std::ptrdiff_t(k))
+        if (set.node == node.name && (!is_typed || node.values.contains(set.argument)))
             values[set.argument] = set.value;
-    }
+    };
+    for (const std::string& text : values_) put_in(text, false);
+    for (const std::string& text : typed_) put_in(text, true);
     for (const TextureArgument& argument :
          data_->textures.functions[size_t(node.function)].arguments) {
         if (values.contains(argument.name)) continue;
@@ -359,46 +359,70 @@ bool LiveScene::write_value(size_t k, const std::string& name, const json& value
     return true;
 }
 
-// Of an argument that at best the function's file as it is by now declares: the scene is loaded
-// again. Where that fails for want of more values, this one waits for them.
-Edit LiveScene::set_new_value(const TextureNodeValues& node, const std::string& text)
+bool LiveScene::is_taken(const std::string& text) const
+{
+    const TextureValue set = parse_texture_value(text, printable(text));
+    const auto& nodes = data_->textures.nodes;
+    const auto node = std::ranges::find(nodes, set.node, &TextureNodeValues::name);
+    return node != nodes.end() && node->values.contains(set.argument);
+}
+
+std::vector<std::string> LiveScene::waiting() const
+{
+    std::vector<std::string> waiting;
+    std::ranges::copy_if(typed_, std::back_inserter(waiting),
+                         [&](const std::string& text) { return !is_taken(text); });
+    return waiting;
+}
+
+// Once all files are read and taken, nothing is left to wait for.
+void LiveScene::drop_waiting(Edit& edit)
+{
+    for (const std::string& text : waiting()) {
+        edit.warnings.push_back(printable(text) + ": no texture takes it now; dropped");
+        std::erase(typed_, text);
+    }
+}
+
+// An argument that at best the function's file as it is by now declares: its value waits until that
+// file is taken. Returns what the file changes.
+std::string LiveScene::wait_for_file(const TextureNodeValues& node, const TextureValue& set,
+                                     const std::string& text)
 {
     const TextureFunction& function = data_->textures.functions[size_t(node.function)];
-    const TextureFunction fresh =
-        translate_texture({function.file, function.file, function.asked, function.id});
-    const TextureValue set = parse_texture_value(text, printable(text));
+    TextureFunction fresh;
+    try {
+        fresh = translate_texture({function.file, function.file, function.asked, function.id});
+    } catch (const std::runtime_error&) {  // whether it takes the value, a better save will show
+        put(typed_, set, text);
+        throw;
+    }
     const TextureNode named{.name = node.name};
     argument_named(set.argument, named, fresh);
     const std::string where =
         fmt::format("texture node {}: argument {}", node.name, printable(set.argument));
     if (const auto numbers = constant_numbers(set.value, where))
         check_argument(named, fresh, set.argument, {.numbers = *numbers});
-    put(waiting_, set, text);
-    const std::vector<std::string> waiting = waiting_;
-    try {
-        return reload(takes_others(fresh));
-    } catch (...) {
-        waiting_ = waiting;
-        throw;
-    }
+    put(typed_, set, text);
+    return takes_others(fresh);
 }
 
 Edit LiveScene::set_value(const std::string& text)
 {
+    const TextureValue set = parse_texture_value(text, printable(text));
+    const auto& nodes = data_->textures.nodes;
+    const TextureNodeValues& node =
+        nodes[size_t(texture_node_named(set.node, nodes, printable(text)))];
+    const bool is_new = !node.values.contains(set.argument);
+    std::string reason = is_new ? wait_for_file(node, set, text) : "";
     const bool had_failed = has_failed_;
-    const auto change = [&]() -> Edit {
-        const TextureValue set = parse_texture_value(text, printable(text));
-        const auto& nodes = data_->textures.nodes;
-        const TextureNodeValues& node =
-            nodes[size_t(texture_node_named(set.node, nodes, printable(text)))];
-        if (!node.values.contains(set.argument)) return set_new_value(node, text);
-        put(values_, set, text);
-        Edit edit;
-        std::string reason;
-        return update_values(edit, reason) ? edit : reload(reason);
-    };
     try {
-        Edit edit = attempt(change);
+        Edit edit = attempt([&]() -> Edit {
+            if (is_new) return reload(reason);
+            put(typed_, set, text);
+            Edit edit;
+            return update_values(edit, reason) ? edit : reload(reason);
+        });
         has_failed_ = had_failed && edit.kind != EditKind::scene;
         return edit;
     } catch (...) {
@@ -423,7 +447,7 @@ void LiveScene::undo()
         set_word(*data_, at->first, at->second);
     data_->textures = std::move(before_.textures);
     text_ = std::move(before_.text);
-    values_ = std::move(before_.values);
+    typed_ = std::move(before_.typed);
     before_ = {};
     has_failed_ = true;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host/scene/load.hpp"
+#include "host/scene/texture_arguments.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -30,11 +31,11 @@ struct Edit {
 
 class LiveScene {
 public:
-    // Loads the scene with these "NODE.ARGUMENT=JSON" values.
-    using Loader = std::function<SceneData(const std::vector<std::string>& values)>;
+    // Loads the scene with these LoadOptions::typed_values.
+    using Loader = std::function<SceneData(const std::vector<std::string>& typed)>;
 
     // `file`: the scene's. `more`: files beside those that it names, as an environment picture.
-    // `values`: those of the command line. Throws what `load` throws.
+    // `values`: those of the command line, which `load` knows. Throws what `load` throws.
     LiveScene(std::filesystem::path file, std::vector<std::filesystem::path> more,
               std::vector<std::string> values, Loader load);
 
@@ -50,6 +51,9 @@ public:
     // until then undo() takes it back, and data() of before stays where it was.
     Edit look_again(const std::vector<std::filesystem::path>& changed);
     Edit set_value(const std::string& text);
+    // Typed values of arguments that data() does not have: they are kept for a save that brings
+    // them.
+    std::vector<std::string> waiting() const;
     // accept() gives the scene of before where all of it was loaded anew: whoever uses it may go
     // on.
     std::unique_ptr<SceneData> accept();
@@ -66,7 +70,7 @@ private:
     // What undo() needs.
     struct Before {
         Text text;
-        std::vector<std::string> values;
+        std::vector<std::string> typed;
         std::unique_ptr<SceneData> data;  // when all of it was loaded anew
         SceneTextures textures;
         std::vector<std::pair<size_t, uint>> words;
@@ -76,7 +80,10 @@ private:
     Edit attempt(Change change);
     static Text read_text(const std::filesystem::path& file);
     Edit reload(const std::string& why);
-    Edit set_new_value(const TextureNodeValues& node, const std::string& text);
+    bool is_taken(const std::string& text) const;
+    void drop_waiting(Edit& edit);
+    std::string wait_for_file(const TextureNodeValues& node, const TextureValue& set,
+                              const std::string& text);
     bool translate_again(const std::vector<std::filesystem::path>& changed, Edit& edit,
                          std::string& reason);
     bool update_values(Edit& edit, std::string& reason);
@@ -89,7 +96,7 @@ private:
     std::filesystem::path file_;
     std::vector<std::filesystem::path> more_;
     std::vector<std::string> values_;
-    std::vector<std::string> waiting_;  // for other values that the files as they are want, too
+    std::vector<std::string> typed_;
     Loader load_;
     Text text_;
     std::vector<std::filesystem::path> attempted_;

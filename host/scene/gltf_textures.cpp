@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <set>
 
 namespace diptych {
 namespace {
@@ -123,8 +124,11 @@ public:
             throw SceneError(fmt::format("texture node {}: {}", entry.name, error.what()));
         }
         auto& defaults = defaults_[int(functions_.size())];
-        for (const TextureArgument& argument : function.arguments)
+        auto& taken = taken_[int(functions_.size())];
+        for (const TextureArgument& argument : function.arguments) {
+            taken.insert(argument.name);
             if (auto value = default_of(argument)) defaults[argument.name] = std::move(*value);
+        }
         for (const std::string& warning : function.warnings) scene.notice(warning);
         return functions_[key] = scene.add_texture_function(std::move(function));
     }
@@ -133,6 +137,18 @@ public:
     const std::map<std::string, json>& defaults_of(int function) const
     {
         return defaults_.at(function);
+    }
+
+    // What the node is given, in the file and by flags.
+    json arguments_of(const Entry& entry, int function) const
+    {
+        json arguments = entry.arguments;
+        for (const std::string& text : options_.typed_values) {
+            TextureValue set = parse_texture_value(text, printable(text));
+            if (set.node == entry.name && taken_.at(function).contains(set.argument))
+                arguments[set.argument] = std::move(set.value);
+        }
+        return arguments;
     }
 
 private:
@@ -299,6 +315,7 @@ private:
     size_t first_flag_ = 0;
     std::map<std::pair<std::string, std::string>, int> functions_;
     std::map<int, std::map<std::string, json>> defaults_;
+    std::map<int, std::set<std::string>> taken_;  // arguments of each function
 };
 
 // Numbers, images or a node: an array gives its elements one after the other.
@@ -354,7 +371,8 @@ void GltfLoader::add_textures()
                 fmt::format("texture node {}: {} {}", entry.name, what, printable(name)), 0);
             node.values[name] = dumped(value);
         };
-        for (const auto& [name, value] : entry.arguments.items()) give(name, value, "argument");
+        const json arguments = reader.arguments_of(entry, node.function);
+        for (const auto& [name, value] : arguments.items()) give(name, value, "argument");
         for (const auto& [name, value] : reader.defaults_of(node.function))
             if (!node.arguments.count(name)) give(name, value, "default of");
         texture_nodes_.push_back(std::move(node));

@@ -27,6 +27,8 @@ struct LoadOptions {
     // of arguments, "NODE.ARGUMENT=JSON" (docs/textures.md).
     std::vector<std::string> textures{};
     std::vector<std::string> texture_values{};
+    // More values, above those, each as far as its node is there and takes it.
+    std::vector<std::string> typed_values{};
     std::string solo{};               // show what this texture node gives, unlit, and nothing else
     std::vector<std::string> aovs{};  // texture nodes that layers of the picture show
     size_t max_image_pixels = size_t(1) << 28;

@@ -45,7 +45,8 @@ protected:
         if (!why_not_.empty()) GTEST_SKIP() << why_not_;
     }
 
-    SceneData load(const std::vector<std::string>& values) const
+    SceneData load(const std::vector<std::string>& values,
+                   const std::vector<std::string>& typed = {}) const
     {
         SceneFlags flags;
         flags.scene = folder_ / "scene.gltf";
@@ -53,6 +54,7 @@ protected:
         flags.eye = "1,0.5,2", flags.target = "1,0.5,0";
         flags.samples = samples;
         flags.load.texture_values = values;
+        flags.load.typed_values = typed;
         return load_from_flags(flags);
     }
 
@@ -109,7 +111,7 @@ protected:
             return requests;
         };
         LiveScene scene(folder_ / "scene.gltf", {}, {},
-                        [&](const std::vector<std::string>& values) { return load(values); });
+                        [&](const std::vector<std::string>& typed) { return load({}, typed); });
         RenderOptions aims;
         aims.samples = samples;
         LiveRender live(
@@ -260,14 +262,17 @@ TEST_P(LiveScenes, ArgumentsThatAnEditDeclaresCanBeTyped)
                           "numbers; give it 1");
     ASSERT_EQ(pictures_.size(), 4u) << testing::PrintToString(told_);
     EXPECT_NE(pictures_[1], pictures_[0]);  // another scale, in the text of before
+    const std::string waits = "left.dim=2 waits for a save that is taken";
+    EXPECT_EQ(told_[0], waits);
+    EXPECT_EQ(told_[2], waits);
     EXPECT_EQ(
-        told_[1].find(
+        told_[3].find(
             "paint.c: userProc takes or asks for other things than before: the whole scene is "
             "loaded again; first new sample after"),
         0u)
-        << told_[1];
+        << told_[3];
     EXPECT_EQ(pictures_[2], fresh({"left.dim=2", "paint.scale=5", "paint.dim=0.25"}));
-    EXPECT_EQ(told_[2].find("paint.dim=0.75: nothing to compile"), 0u) << told_[2];
+    EXPECT_EQ(told_[4].find("paint.dim=0.75: nothing to compile"), 0u) << told_[4];
     EXPECT_EQ(pictures_[3], fresh({"left.dim=2", "paint.scale=5", "paint.dim=0.75"}));
 }
 
@@ -282,6 +287,48 @@ TEST_P(LiveScenes, AValueWaitsOnlyForAnEditThatDeclaresIt)
     EXPECT_EQ(warned_.size(), 2u) << testing::PrintToString(warned_);
     ASSERT_EQ(pictures_.size(), 3u) << testing::PrintToString(warned_);
     EXPECT_EQ(pictures_[2], fresh({link}));
+    EXPECT_EQ(std::ranges::count(told_, "notice: left.dim=2: no texture takes it now; dropped"), 1);
+}
+
+// Saves that are refused leave what waits, be it for other values or for a text that compiles.
+TEST_P(LiveScenes, AWaitingValueOutlivesRefusedSaves)
+{
+    std::string wide = painted_source;
+    wide.replace(wide.find("tint)"), 5, "tint, float dim)");
+    wide.replace(wide.find("stripe * tint"), 13, "stripe * tint * dim");
+    std::string broken = wide;
+    broken.replace(broken.find("sin("), 4, "sine(");
+    const auto save = [&](const std::string& text) {
+        return Step{.saved = {"paint.c"},
+                    .before = [this, text] { folder_.write("paint.c", text); }};
+    };
+    run({save(wide),
+         {.typed = {"left.dim=2"}},
+         save(broken),
+         {.typed = {"paint.dim=0.25"}},
+         {.typed = {"paint.din=3"}},
+         save(broken + "\n"),
+         save(wide),
+         save(painted_source),
+         save(wide)});
+    const auto count = [&](const std::string& line) { return std::ranges::count(told_, line); };
+    ASSERT_EQ(warned_.size(), 7u) << testing::PrintToString(warned_);
+    EXPECT_NE(warned_[1].find("paint: its argument float dim is missing"), std::string::npos);
+    for (const size_t k : {2, 3, 4, 5})
+        EXPECT_NE(warned_[k].find("sine"), std::string::npos) << warned_[k];
+    EXPECT_EQ(count("left.dim=2 waits for a save that is taken"), 5);
+    EXPECT_EQ(count("paint.dim=0.25 waits for a save that is taken"), 3);
+    EXPECT_EQ(count("paint.din=3 waits for a save that is taken"), 2);
+    ASSERT_EQ(pictures_.size(), 3u) << testing::PrintToString(told_);
+    EXPECT_EQ(count("notice: paint.din=3: no texture takes it now; dropped"), 1);
+    folder_.write("paint.c", wide);
+    EXPECT_EQ(pictures_[1], fresh({"left.dim=2", "paint.dim=0.25"}));
+    EXPECT_NE(pictures_[1], pictures_[0]);
+    // gone with the text that took them
+    EXPECT_EQ(pictures_[2], pictures_[0]);
+    for (const char* value : {"left.dim=2", "paint.dim=0.25"})
+        EXPECT_EQ(count(std::string("notice: ") + value + ": no texture takes it now; dropped"), 1);
+    EXPECT_NE(warned_[6].find("left: its argument float dim is missing"), std::string::npos);
 }
 
 // A default that is no JSON, images in place of it, and back.
