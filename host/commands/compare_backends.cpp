@@ -60,16 +60,34 @@ std::pair<std::string, std::string> parse_backends(const std::string& text)
     return {text.substr(0, comma), text.substr(comma + 1)};
 }
 
+DeviceFlags flags_of(const CompareBackendsCommand& command, const std::string& backend)
+{
+    DeviceFlags flags = command.device;
+    flags.backend = backend;
+    if (backend != "twin") flags.options.debug_kernels = false;
+    return flags;
+}
+
 std::unique_ptr<Backend> backend_of(const CompareBackendsCommand& command, const std::string& name,
                                     SceneData& scene)
 {
-    DeviceFlags flags = command.device;
-    flags.backend = name;
-    if (name != "twin") flags.options.debug_kernels = false;
-    std::unique_ptr<Backend> backend = make_backend(name, options_from_flags(flags));
+    std::unique_ptr<Backend> backend =
+        make_backend(name, options_from_flags(flags_of(command, name)));
     if (!command.is_quiet) fmt::print(stderr, "{}: {}\n", name, backend->description());
     backend->upload(scene);
     return backend;
+}
+
+// The scene's, and of what the backends run, each once.
+std::vector<std::string> notices_of(const SceneData& scene, const CompareBackendsCommand& command,
+                                    const std::vector<std::string>& backends)
+{
+    std::vector<std::string> notices = scene.notices;
+    for (const std::string& backend : backends)
+        for (std::string& line : generated_notices(scene, flags_of(command, backend)))
+            if (std::ranges::find(notices, line) == notices.end())
+                notices.push_back(std::move(line));
+    return notices;
 }
 
 image::Picture picture_from(Backend& backend, const SceneData& scene,
@@ -135,6 +153,7 @@ MeanDifference mean_difference(const image::Picture& a, const image::Picture& b)
 // What was found, for text and JSON.
 struct Findings {
     std::string a, b;  // names of the backends
+    std::vector<std::string> notices;
     Bound bound;
     size_t pixels = 0;
     std::vector<Pixel> differing;
@@ -207,6 +226,7 @@ std::string json_of(const Findings& found, const CompareBackendsCommand& command
     report["differing_pixels"] = found.differing.size();
     report["mean_difference"] = found.difference.mean;
     report["mean_difference_standard_error"] = found.difference.standard_error;
+    report["notices"] = found.notices;
     report["verdict"] = found.verdict;
     report["within"] = found.is_within;
     if (found.divergence) {
@@ -318,6 +338,9 @@ int run_compare_backends(const CompareBackendsCommand& command, std::ostream& ou
     SceneFlags flags = command.scene;
     flags.scene = command.compare.reference;
     SceneData scene = load_from_flags(flags);
+    found.notices = notices_of(scene, command, {found.a, found.b});
+    if (!command.is_quiet)
+        for (const std::string& line : found.notices) fmt::print(stderr, "notice: {}\n", line);
     const std::unique_ptr<Backend> a = backend_of(command, found.a, scene);
     const std::unique_ptr<Backend> b = backend_of(command, found.b, scene);
     const image::Picture first = picture_from(*a, scene, command);

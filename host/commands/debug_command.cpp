@@ -394,6 +394,8 @@ int run_debug_command(const DebugCommand& command)
     if (!command.replay.empty()) return replay(command, std::move(flags));
     const std::optional<Pixel> pixel = parse_pixel(command.pixel, flags.size);
     SceneData scene = load_from_flags(flags);
+    for (const std::string& line : generated_notices(scene, command.device))
+        fmt::print(stderr, "notice: {}\n", line);
     const DebugStop stop = find_stop(scene, node_of(command), pixel->x, pixel->y, command.line);
     const std::vector<std::string> program = program_of(command);
     if (command.is_vscode) {

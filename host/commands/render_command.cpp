@@ -17,6 +17,7 @@
 #include <csignal>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -252,7 +253,7 @@ int run_render_command(const RenderCommand& command)
     const std::unique_ptr<Backend> backend =
         make_backend(run.device.backend, options_from_flags(run.device));
     SceneData scene = load_from_flags(run.scene, is_adaptive(options));
-    add_generated_notices(scene, run.device);
+    std::ranges::move(generated_notices(scene, run.device), std::back_inserter(scene.notices));
     check_film_fits(run, scene, options);
     if (!run.is_quiet) print_plan(scene, *backend, backend->plan(scene), options);
     std::optional<RenderState> start =

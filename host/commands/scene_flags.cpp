@@ -288,12 +288,11 @@ SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
     return scene;
 }
 
-void add_generated_notices(SceneData& scene, const DeviceFlags& flags)
+std::vector<std::string> generated_notices(const SceneData& scene, const DeviceFlags& flags)
 {
     const std::string& folder = flags.options.use_generated;
-    if (folder.empty()) return;
-    std::ranges::move(notices_of_generated(scene, folder, flags.backend),
-                      std::back_inserter(scene.notices));
+    if (folder.empty()) return {};
+    return notices_of_generated(scene, folder, flags.backend);
 }
 
 BackendOptions options_from_flags(const DeviceFlags& flags)

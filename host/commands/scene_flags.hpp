@@ -49,8 +49,8 @@ void add_device_options(CLI::App& app, DeviceFlags& flags);  // without --backen
 // Checks what the flags say and loads the scene, settings filled in: for a render with an error or
 // time target, or with --samples alone. Throws std::runtime_error.
 SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive = false);
-// Notices about an edited copy of generated code, where one is to run.
-void add_generated_notices(SceneData& scene, const DeviceFlags& flags);
+// What there is to say of the edited copy of generated code that is to run, if one is.
+std::vector<std::string> generated_notices(const SceneData& scene, const DeviceFlags& flags);
 BackendOptions options_from_flags(const DeviceFlags& flags);
 // For commands that can use several devices: the flags with the backend that --device asks for.
 DeviceFlags with_device_list(const DeviceFlags& flags);

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <stdexcept>
 
 namespace diptych {
@@ -135,6 +136,7 @@ int preview(const TextureCommand& command)
     image::check_writable(command.output);
     SceneData scene = preview_scene(find_texture_file(command.file),
                                     {command.values, command.slot, width, height});
+    std::ranges::move(generated_notices(scene, command.device), std::back_inserter(scene.notices));
     for (const std::string& notice : scene.notices) fmt::print(stderr, "notice: {}\n", notice);
     const std::unique_ptr<Backend> backend =
         make_backend(command.device.backend, options_from_flags(command.device));

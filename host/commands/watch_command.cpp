@@ -34,6 +34,10 @@ public:
                            const RenderResult* end) {
                         if (show(picture) && end) tell_end(*end, scene);
                     },
+                .notices =
+                    [this](const SceneData& scene) {
+                        return generated_notices(scene, command_.device);
+                    },
                 .tell = [this](const std::string& line) { tell(line); },
                 .warn =
                     [](const std::string& message) {
@@ -150,9 +154,7 @@ int run_watch_command(const WatchCommand& command)
     const auto load = [&](const std::vector<std::string>& typed) {
         SceneFlags flags = run.scene;
         flags.load.typed_values = typed;
-        SceneData scene = load_from_flags(flags, is_adaptive(aims));
-        add_generated_notices(scene, run.device);
-        return scene;
+        return load_from_flags(flags, is_adaptive(aims));
     };
     LiveScene scene(run.scene.scene, other_files(run.scene), run.scene.load.texture_values, load);
     const auto make = [&] {

@@ -55,6 +55,7 @@ LiveRender::LiveRender(LiveScene& scene, MakeBackend make_backend, LiveHooks hoo
 
 void LiveRender::run()
 {
+    tell_news();
     while (!is_over_) {
         stop_ = false;
         render_once();
@@ -182,12 +183,21 @@ void LiveRender::follow(const Edit& edit)
 void LiveRender::begin_again(const Edit& edit, Clock::time_point since)
 {
     for (const std::string& line : edit.warnings) hooks_.tell("notice: " + line);
+    tell_news();
     if (edit.kind == EditKind::nothing) return;
     stop_ = true;
     if (edit_.empty()) edited_ = since;
     edit_ = edit.what;
     if (edit.kind == EditKind::arguments) edit_ += ": nothing to compile";
     if (edit.kind == EditKind::textures) edit_ += ": texture stage made anew";
+}
+
+void LiveRender::tell_news()
+{
+    std::vector<std::string> notices = hooks_.notices(scene_.data());
+    for (const std::string& line : notices)
+        if (std::ranges::find(notices_, line) == notices_.end()) hooks_.tell("notice: " + line);
+    notices_ = std::move(notices);
 }
 
 void LiveRender::warn(const std::string& message)

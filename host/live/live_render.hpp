@@ -32,6 +32,8 @@ struct LiveHooks {
     std::function<void(const image::Picture&, const LiveScene&, const Backend&,
                        const RenderResult* end)>
         show;
+    // What there is to say of the scene as it is by now: each line is told when it is new.
+    std::function<std::vector<std::string>(const SceneData&)> notices;
     std::function<void(const std::string&)> tell;  // a line: what an edit did, how long it took
     std::function<void(const std::string&)> warn;  // the message of an edit that failed
 };
@@ -58,6 +60,7 @@ private:
     void serve(double wait_seconds);
     void apply(const Requests& requests);
     void follow(const Edit& edit);
+    void tell_news();
     void warn(const std::string& message);
     void hold(const std::string& message);
     void tell_held_message();
@@ -80,7 +83,8 @@ private:
     Clock::time_point dispatched_;
     Clock::time_point shown_;
     double show_seconds_ = 0;
-    std::string edit_;  // that waits for its first sample
+    std::vector<std::string> notices_;  // as they were last told
+    std::string edit_;                  // that waits for its first sample
     Clock::time_point edited_;
     Clock::time_point asked_;  // when edits were last looked for
     double last_latency_ = 0;

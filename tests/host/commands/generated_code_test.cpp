@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 using namespace diptych;
 
 namespace {
@@ -40,6 +42,17 @@ protected:
     std::string file() const
     {
         return GetParam() == "opencl" ? "code/functions.cl" : "code/functions.hpp";
+    }
+    std::string notice(const std::string& copy) const
+    {
+        return "--use-generated: " + (folder_ / copy) + ": made before the last edit of " +
+               (folder_ / "paint.c") +
+               ", and runs as it is; for that edit write it anew with --generated-dir";
+    }
+    void edit_texture() const
+    {
+        std::string source = painted_source;
+        folder_.write("paint.c", source.replace(source.find("0.25f"), 5, "0.5f"));
     }
     std::string text() const
     {
@@ -119,21 +132,54 @@ TEST_P(GeneratedCode, ACopyOlderThanAnEditOfTheTextureIsNamed)
     const std::string code = folder_ / "code";
     EXPECT_EQ(notices({"--generated-dir", code}, "a.exr"), usual);
     EXPECT_EQ(notices({"--use-generated", code}, "b.exr"), usual);
-    std::string source = painted_source;
-    source.replace(source.find("0.25f"), 5, "0.5f");
-    folder_.write("paint.c", source);
+    edit_texture();
     EXPECT_EQ(notices({"--use-generated", code}, "c.exr"),
-              (std::vector<std::string>{
-                  sky,
-                  "--use-generated: " + (folder_ / file()) + ": made before the last edit of " +
-                      (folder_ / "paint.c") +
-                      ", and runs as it is; for that edit write it anew with --generated-dir",
-                  no_error}));
+              (std::vector<std::string>{sky, notice(file()), no_error}));
     EXPECT_EQ(pixels("a.exr"), pixels("c.exr"));
     EXPECT_EQ(notices({"--generated-dir", code}, "d.exr"), usual);
     EXPECT_EQ(notices({"--use-generated", code}, "e.exr"), usual);
     EXPECT_EQ(pixels("d.exr"), pixels("e.exr"));
     EXPECT_NE(pixels("a.exr"), pixels("e.exr"));
+}
+
+TEST_P(GeneratedCode, ComparisonsAndDebuggersNameAnOlderCopyToo)
+{
+    if (!is_usable()) GTEST_SKIP() << "no OpenCL device";
+    const std::string code = folder_ / "code";
+    const auto run = [&](std::vector<std::string> words) {
+        words.insert(words.begin() + 1, folder_ / "scene.gltf");
+        words.insert(words.end(), painted_view.begin(), painted_view.end());
+        const Outcome outcome = run_diptych(
+            words, {.seconds = 200, .environment = {{"DIPTYCH_CACHE_DIR", folder_ / "cache"}}});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        return outcome;
+    };
+    const auto notices_of_comparison = [&] {
+        const Outcome outcome = run({"compare", "--backends", "twin," + GetParam(), "--samples",
+                                     "1", "--use-generated", code, "--json", folder_ / "a.json"});
+        std::ifstream in(folder_ / "a.json");
+        const nlohmann::json report = nlohmann::json::parse(in);
+        const auto notices = report.at("notices").get<std::vector<std::string>>();
+        for (const std::string& line : notices)
+            EXPECT_EQ(std::ranges::count(outcome.err_lines(), "notice: " + line), 1) << outcome.err;
+        return notices;
+    };
+    const auto lines_of_debugger = [&] {
+        return run({"debug", "--pixel", "12,8", "--texture", "paint", "--backend", "twin",
+                    "--use-generated", code, "--print"})
+            .err_lines();
+    };
+    for (const std::string& backend : {std::string("twin"), GetParam()})
+        run({"render", "--backend", backend, "--generated-dir", code, "--samples", "1", "--quiet",
+             "-o", folder_ / "a.exr"});
+    std::vector<std::string> wanted = notices_of_comparison();
+    EXPECT_EQ(lines_of_debugger(), std::vector<std::string>{});
+    edit_texture();
+    wanted.push_back(notice("code/functions.hpp"));
+    if (GetParam() == "opencl") wanted.push_back(notice("code/functions.cl"));
+    EXPECT_EQ(notices_of_comparison(), wanted);
+    EXPECT_EQ(lines_of_debugger(),
+              std::vector<std::string>{"notice: " + notice("code/functions.hpp")});
 }
 
 // By the lines of the copy, where the error is to be mended; not by those of the user's file.

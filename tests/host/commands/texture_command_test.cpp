@@ -133,6 +133,25 @@ TEST_F(TextureCommandLine, PreviewRefusesWhatMakesNoSense)
     expect_refusal({"-o", "out.bmp"}, "out.bmp");
 }
 
+TEST_F(TextureCommandLine, PreviewNamesACopyOlderThanAnEdit)
+{
+    const auto lines = [&](const std::string& flag) {
+        const Outcome outcome =
+            texture({"preview", "shaded.c", "--set", "weights=[1]", "--size", "32x16", "--samples",
+                     "1", "-o", "out.exr", "--backend", "twin", flag, "code"});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        return outcome.err_lines();
+    };
+    const std::vector<std::string> usual = lines("--generated-dir");
+    EXPECT_EQ(lines("--use-generated"), usual);
+    folder_.write("shaded.c", shaded + "// edited\n");
+    std::vector<std::string> wanted = usual;
+    wanted.push_back("notice: --use-generated: code/functions.hpp: made before the last edit of " +
+                     (folder_ / "shaded.c") +
+                     ", and runs as it is; for that edit write it anew with --generated-dir");
+    EXPECT_EQ(lines("--use-generated"), wanted);
+}
+
 TEST_F(TextureCommandLine, CostMeasuresBackendsAndComparesTheirValues)
 {
     const Outcome outcome = texture({"cost", "shaded.c", "--backends", "cpu,twin,double"});

@@ -145,6 +145,41 @@ TEST_F(WatchCommandLine, FollowsTheKeyboardAndEditors)
     EXPECT_EQ(watch.exit_code(), 0);
 }
 
+// Each edit that the copy lacks is told, and the copy runs as it is.
+TEST_F(WatchCommandLine, AnEditThatMakesAGeneratedCopyOldIsTold)
+{
+    const std::vector<std::string> copy = {"--backend", "twin", "--use-generated",
+                                           folder_ / "code"};
+    rendered({"--backend", "twin", "--generated-dir", folder_ / "code"});
+    Watch watch(folder_, words("out.exr", "4", copy));
+    ASSERT_TRUE(watch.says("complete with 4 samples"));
+    const std::vector<float> first = pixels("out.exr");
+    std::string edited = painted_source;
+    edited.replace(edited.find("0.25f"), 5, "0.5f");
+    const std::string notice =
+        "watch: notice: --use-generated: " + (folder_ / "code/functions.hpp") +
+        ": made before the last edit of " + (folder_ / "paint.c");
+    EXPECT_EQ(watch.log().find("made before"), std::string::npos) << watch.log();
+    for (int k = 0; k < 2; ++k) {
+        folder_.write("paint.c", edited);
+        ASSERT_TRUE(watch.says(notice));
+        ASSERT_TRUE(watch.says("complete with 4 samples"));
+        EXPECT_EQ(pixels("out.exr"), first);
+        folder_.write("paint.c", painted_source);
+        ASSERT_TRUE(watch.says("paint.c: texture stage made anew"));
+        ASSERT_TRUE(watch.says("complete with 4 samples"));
+    }
+    folder_.write("paint.c", edited + "// more\n");
+    ASSERT_TRUE(watch.says(notice));
+    watch.type("quit\n");
+    EXPECT_EQ(watch.exit_code(), 0);
+
+    // and from the first picture on
+    std::filesystem::remove(folder_ / "log.txt");
+    Watch again(folder_, words("out.exr", "4", copy));
+    ASSERT_TRUE(again.says(notice));
+}
+
 TEST_F(WatchCommandLine, TheEndOfTheInputEndsNothingAndInterruptsWriteThePicture)
 {
     Watch watch(folder_, words("out.png", "1000000"));

@@ -89,6 +89,7 @@ protected:
             compilations_.push_back(texture_compilations());
             due();
         };
+        hooks.notices = [](const SceneData&) { return std::vector<std::string>(); };
         hooks.tell = [&](const std::string& line) { told_.push_back(line); };
         hooks.warn = [&](const std::string& line) {
             warned_.push_back(line);
