@@ -1,6 +1,7 @@
 #include "host/commands/compare_backends.hpp"
 
 #include "host/commands/render_report.hpp"
+#include "host/image/whole_file.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -360,7 +361,7 @@ int run_compare_backends(const CompareBackendsCommand& command, std::ostream& ou
     const bool only_json = command.compare.json && command.compare.json_file.empty();
     out << (only_json ? json_of(found, command) + "\n" : text_of(found));
     if (command.compare.json && !only_json)
-        image::write_file_whole(command.compare.json_file, json_of(found, command) + "\n");
+        image::write_text(command.compare.json_file, json_of(found, command) + "\n");
     return found.is_within ? 0 : 1;
 }
 

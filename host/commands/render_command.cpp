@@ -5,6 +5,7 @@
 #include "host/commands/progress_pictures.hpp"
 #include "host/commands/render_report.hpp"
 #include "host/commands/texture_capture.hpp"
+#include "host/image/whole_file.hpp"
 #include "host/render/host_memory.hpp"
 
 #include <CLI/CLI.hpp>
@@ -45,7 +46,8 @@ void expect_all_different(const RenderCommand& command)
     std::set<std::filesystem::path> seen;
     for (const std::string& name : names)
         if (!name.empty() && name != "-" &&
-            !seen.insert(std::filesystem::absolute(name).lexically_normal()).second)
+            !seen.insert(std::filesystem::absolute(image::file_behind(name)).lexically_normal())
+                 .second)
             throw std::runtime_error(name + ": is named for two outputs; give each its own file");
 }
 
@@ -222,7 +224,7 @@ int run_render_command(const RenderCommand& command)
     if (!run.scene.load.aovs.empty() && !has_layers && run.json.empty() &&
         run.checkpoint.file.empty())
         throw std::runtime_error("--aov: pictures with layers are .exr files; name one with -o");
-    if (!run.json.empty() && run.json != "-") image::check_file_writable(run.json);
+    if (!run.json.empty() && run.json != "-") image::check_text_writable(run.json);
     if (!run.capture.empty()) {
         if (run.pixel.empty())
             throw std::runtime_error("--capture " + run.capture +
@@ -230,7 +232,7 @@ int run_render_command(const RenderCommand& command)
         if (run.device.takes_list)
             throw std::runtime_error("--capture: what one device made of a texture; name one "
                                      "with --device");
-        image::check_file_writable(run.capture);
+        image::check_text_writable(run.capture);
     }
 
     watch_for_interrupts();
@@ -325,7 +327,7 @@ int run_render_command(const RenderCommand& command)
         if (run.json == "-")
             std::cout << report << std::flush;
         else
-            image::write_file_whole(run.json, report);
+            image::write_text(run.json, report);
     }
     if (!lost.empty()) throw std::runtime_error(lost);
     const bool is_audit_cut = audited && audited->blocks < audited->chosen;

@@ -8,6 +8,7 @@
 
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 namespace diptych {
 namespace {
@@ -139,6 +140,15 @@ std::vector<std::string> names_in(const std::string& list)
     return names;
 }
 
+// Rows whose pictures are written, and what their files are called.
+constexpr std::pair<Row, const char*> pictured_rows[] = {
+    {PLAIN, "plain"}, {RUST, "rust"}, {SCRATCHES, "scratches"}};
+
+std::string picture_file(const StudyCommand& command, const char* row, const std::string& backend)
+{
+    return fmt::format("{}-{}-{}.png", command.output, row, backend);
+}
+
 void check(const StudyCommand& command)
 {
     const auto refuse = [](const std::string& flag, int value, int low, int high) {
@@ -150,6 +160,10 @@ void check(const StudyCommand& command)
     refuse("--samples", command.study.samples, 1, 65536);
     refuse("--rays", command.study.rays, 1, 256);
     refuse("--repeat", command.repetitions, 1, 100);
+    if (command.output.empty()) return;
+    for (const std::string& name : names_in(command.backends))
+        for (const auto& [row, text] : pictured_rows)
+            image::check_writable(picture_file(command, text, name));
 }
 
 }  // namespace
@@ -205,10 +219,8 @@ int run_study_command(const StudyCommand& command)
         is_same &= are_the_same(times);
         print_signs(times);
         if (command.output.empty()) continue;
-        for (const auto& [row, text] :
-             {std::pair{PLAIN, "plain"}, {RUST, "rust"}, {SCRATCHES, "scratches"}})
-            image::write_picture(fmt::format("{}-{}-{}.png", command.output, text, name),
-                                 times.pictures[row]);
+        for (const auto& [row, text] : pictured_rows)
+            image::write_picture(picture_file(command, text, name), times.pictures[row]);
     }
     if (!command.is_without_devices) print_study_devices(scenes);
     return is_same ? 0 : exit_different;

@@ -3,7 +3,7 @@
 #include "backends/sha256.hpp"
 #include "common/textures/procedural.h"
 #include "host/commands/texture_fault_report.hpp"
-#include "host/image/image.hpp"
+#include "host/image/whole_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -210,7 +210,7 @@ void write_capture(const std::string& path, const TextureCapture& capture)
                        {"version", format_version},
                        {"sha256", sha256_of(content)},
                        {"content", content}};
-    image::write_file_whole(path, file.dump() + "\n");
+    image::write_text(path, file.dump() + "\n");
 }
 
 TextureCapture read_capture(const std::string& path)

@@ -2,7 +2,7 @@
 
 #include "common/textures/procedural.h"
 #include "host/commands/texture_fault_report.hpp"
-#include "host/image/image.hpp"
+#include "host/image/whole_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -203,7 +203,7 @@ int show_texture_memory(const SceneFlags& flags, const std::string& file)
         std::cout << memory.dump(2) << "\n" << std::flush;
         return 0;
     }
-    if (!file.empty()) image::write_file_whole(file, memory.dump(2) + "\n");
+    if (!file.empty()) image::write_text(file, memory.dump(2) + "\n");
     print(memory);
     return 0;
 }

@@ -3,6 +3,7 @@
 #include "host/image/heat_map.hpp"
 #include "host/image/image.hpp"
 #include "host/image/metrics.hpp"
+#include "host/image/whole_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -230,7 +231,7 @@ void print_report(const CompareOptions& options, const CompareResult& result, st
 {
     const Json report = Json::parse(result.json);
     if (options.json && !options.json_file.empty())
-        write_file_whole(options.json_file, result.json + "\n");
+        write_text(options.json_file, result.json + "\n");
     if (options.json && options.json_file.empty())
         out << result.json << '\n';
     else

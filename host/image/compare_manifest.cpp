@@ -1,5 +1,5 @@
 #include "host/image/compare.hpp"
-#include "host/image/image.hpp"
+#include "host/image/whole_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -205,9 +205,9 @@ std::string json_list(const std::vector<Outcome>& outcomes)
 void report(const CompareOptions& options, const std::vector<Outcome>& outcomes, std::ostream& out)
 {
     const std::string xml = junit_xml(options.manifest, outcomes);
-    if (!options.junit.empty()) write_file_whole(options.junit, xml);
+    if (!options.junit.empty()) write_text(options.junit, xml);
     if (options.json && !options.json_file.empty())
-        write_file_whole(options.json_file, json_list(outcomes));
+        write_text(options.json_file, json_list(outcomes));
     if (options.json && options.json_file.empty())
         out << json_list(outcomes);
     else if (options.junit.empty())

@@ -68,7 +68,7 @@ struct WriteOptions {
 
 // Encodes by extension: exr holds every layer and the metadata; png, jpg, jpeg, tif, tiff show the
 // beauty layer. The same input gives the same bytes. The file appears whole or not at all: it is
-// encoded in memory, written to a temporary name in the same folder and renamed. Throws
+// encoded in memory and written by write_file_whole. Throws
 // std::runtime_error (path: what; what to do).
 void write_picture(const std::string& path, const Picture& picture,
                    const WriteOptions& options = {});
@@ -85,12 +85,12 @@ bool holds_layers(const std::string& path);
 bool holds_sixteen_bits(const std::string& path);
 
 // Throws now what write_picture would throw after the rendering: unknown extension, no such folder,
-// not writable.
+// not writable, not a file.
 void check_writable(const std::string& path);
 void check_file_writable(const std::string& path);  // of any kind: by write_file_whole
 
-// Puts bytes at a path by way of a temporary name in the same folder; for any file that must not be
-// half-written.
+// Puts bytes at a path, whole or not at all (whole_file.hpp, which also has texts that may go to a
+// pipe).
 void write_file_whole(const std::string& path, std::string_view bytes);
 
 struct ReadLimits {

@@ -1,5 +1,6 @@
 #include "host/image/image.hpp"
 #include "host/image/view_transform.hpp"
+#include "host/image/whole_file.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/half.h>
@@ -7,15 +8,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
-#include <system_error>
-#include <unistd.h>
 
 namespace diptych::image {
 namespace {
@@ -58,60 +55,6 @@ const Format& format_of(const std::string& path)
          fmt::format("unknown picture format '{}'; use .exr, .png, .jpg, .jpeg, .tif or .tiff",
                      fs::path(path).extension().string()));
 }
-
-fs::path temporary_beside(const fs::path& path)
-{
-    static std::atomic<unsigned> counter = 0;
-    return path.parent_path() /
-           fmt::format(".{}.{}.{}.tmp", path.filename().string(), getpid(), counter++);
-}
-
-// A new file beside `path`; removed again unless it was put in place.
-class TemporaryFile {
-public:
-    explicit TemporaryFile(const std::string& path) : path_(path), name_(temporary_beside(path))
-    {
-        std::error_code ignored;
-        if (fs::is_directory(path_, ignored)) fail(path, "is a folder; name a file");
-        file_ = std::fopen(name_.c_str(), "wbx");
-        if (!file_)
-            fail(path,
-                 fmt::format(
-                     "cannot be written ({}); check that its folder exists and is yours to write",
-                     std::strerror(errno)));
-    }
-    ~TemporaryFile()
-    {
-        if (file_) std::fclose(file_);
-        if (!placed_) std::remove(name_.c_str());
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    void write(std::string_view bytes)
-    {
-        const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size() &&
-                             std::fflush(file_) == 0;
-        const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-        if (!written || !closed)
-            fail(path_, fmt::format("could not be written whole ({}); nothing was replaced",
-                                    std::strerror(errno)));
-    }
-
-    void put_in_place()
-    {
-        std::error_code error;
-        fs::rename(name_, path_, error);
-        if (error) fail(path_, fmt::format("cannot be replaced ({})", error.message()));
-        placed_ = true;
-    }
-
-private:
-    std::string path_;
-    fs::path name_;
-    std::FILE* file_ = nullptr;
-    bool placed_ = false;
-};
 
 std::string channel_name(const Layer& layer, const std::string& channel)
 {
@@ -303,8 +246,8 @@ void write_pictures(const std::vector<std::string>& paths, const Picture& pictur
 
 void write_file_whole(const std::string& path, std::string_view bytes)
 {
-    TemporaryFile file(path);
-    file.write(bytes);
+    WholeFile file(path, Survives::Program);
+    file.write(bytes.data(), bytes.size());
     file.put_in_place();
 }
 
@@ -328,6 +271,6 @@ void check_writable(const std::string& path)
     check_file_writable(path);
 }
 
-void check_file_writable(const std::string& path) { TemporaryFile probe(path); }
+void check_file_writable(const std::string& path) { WholeFile probe(path, Survives::Program); }
 
 }  // namespace diptych::image

@@ -3,32 +3,21 @@
 // does so.
 #pragma once
 
-#include <cstddef>
+#include "host/image/whole_file.hpp"
+
 #include <string>
 
 namespace diptych {
 
-// A new version of a file. Until put_in_place() has returned, the version before it is untouched.
-// All throw std::runtime_error (path: what; what to do). One writer at a time: hold the FileLock.
-class SafeFile {
+// A new version of a file, written by whom holds its FileLock.
+class SafeFile : public image::WholeFile {
 public:
-    explicit SafeFile(std::string path);
-    ~SafeFile();  // removes what was not put in place
-    SafeFile(const SafeFile&) = delete;
-    SafeFile& operator=(const SafeFile&) = delete;
-
-    void write(const void* data, size_t bytes);
-    // Waits for the disk, renames, and waits for the folder. May be called on another thread.
-    void put_in_place();
-
-private:
-    std::string path_;
-    std::string temporary_;
-    int file_ = -1;
+    explicit SafeFile(const std::string& path) : WholeFile(path, image::Survives::Machine) {}
 };
 
-// Held from construction to the end, also if that is a kill: by flock(2) on "PATH.lock". Throws
-// when another process holds it, and when the folder cannot be written.
+// Held from construction to the end, also if that is a kill: by flock(2) on "FILE.lock" beside
+// the file that the path leads to. Throws when another process holds it, when the folder cannot be
+// written, and when the path does not lead to a file.
 class FileLock {
 public:
     explicit FileLock(const std::string& path);
