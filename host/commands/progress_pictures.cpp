@@ -36,7 +36,11 @@ void ProgressPictures::begin(const Settings& settings)
 void ProgressPictures::look_at(const Film& film)
 {
     const Clock::time_point now = Clock::now();
-    if (viewer_ && now - last_sent_ >= std::chrono::seconds(1)) send(film);
+    if (viewer_ && viewer_->is_idle() && now - last_shown_ >= std::chrono::seconds(1)) {
+        viewer_->show(film.beauty());
+        last_shown_ = now;
+    }
+    if (viewer_) let_go_unless(viewer_->go_on());
     if (interval_ <= 0 || std::chrono::duration<double>(now - last_written_).count() < interval_)
         return;
     const image::Picture picture = picture_of(film, options_.viewer);
@@ -53,16 +57,16 @@ void ProgressPictures::look_at(const Film& film)
 
 void ProgressPictures::finish(const Film& film)
 {
-    if (viewer_) send(film);
+    if (!viewer_) return;
+    viewer_->show(film.beauty());
+    let_go_unless(viewer_->finish());
 }
 
-void ProgressPictures::send(const Film& film)
+void ProgressPictures::let_go_unless(bool is_there)
 {
-    if (!viewer_->update(film.beauty())) {
-        fmt::print(stderr, "notice: the viewer has gone; rendering goes on\n");
-        viewer_.reset();
-    }
-    last_sent_ = Clock::now();
+    if (is_there) return;
+    fmt::print(stderr, "notice: the viewer has gone; rendering goes on\n");
+    viewer_.reset();
 }
 
 }  // namespace diptych

@@ -21,7 +21,7 @@ public:
     void finish(const Film& film);   // the viewer's last; files are written by who calls
 
 private:
-    void send(const Film& film);
+    void let_go_unless(bool is_there);
 
     using Clock = std::chrono::steady_clock;
 
@@ -32,7 +32,7 @@ private:
     bool has_failed_ = false;  // a file could not be written, and that was said
     std::optional<image::TevClient> viewer_;
     Clock::time_point last_written_ = Clock::now();
-    Clock::time_point last_sent_;
+    Clock::time_point last_shown_;
 };
 
 }  // namespace diptych

@@ -271,7 +271,6 @@ int run_render_command(const RenderCommand& command)
     if (!run.is_quiet) options.progress = [&](const Progress& progress) { bar.show(progress); };
     const RenderResult result = render(*backend, scene, options, std::move(start));
     if (!run.is_quiet) bar.finish();
-    pictures.finish(result.film);
     const std::string lost = checkpoint.finish(result.film, result.schedule);
     if (!result.is_complete && result.statistics.paths == 0 && checkpoint.earlier_seconds() == 0)
         fmt::print(stderr, "notice: interrupted before the first samples; pictures are black\n");
@@ -298,7 +297,8 @@ int run_render_command(const RenderCommand& command)
         picture = picture_of(result.film, options.viewer);
     if (!run.outputs.empty()) add_metadata(picture, run, scene, *backend, result);
     image::write_pictures(run.outputs, picture, write);
-    if (options.pixel)  // beside a report that programs read
+    pictures.finish(result.film);  // after the files, which wait for no viewer
+    if (options.pixel)             // beside a report that programs read
         print_pixel(run.json == "-" ? stderr : stdout, result.film, *options.pixel);
     if (!run.capture.empty()) {
         const TextureCapture capture =
