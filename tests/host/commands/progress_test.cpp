@@ -1,8 +1,12 @@
-// What is seen of a render in progress.
+// What is seen of a render in progress: in a viewer, and in the files.
 #include "host/image/image.hpp"
 #include "tests/host/commands/program.hpp"
 #include "tests/host/image/tev_server.hpp"
 
+#include <atomic>
+#include <poll.h>
+#include <set>
+#include <sys/inotify.h>
 #include <thread>
 
 using namespace diptych;
@@ -54,6 +58,72 @@ TEST_F(Progress, AViewerThatHangsIsLetGo)
     EXPECT_EQ(outcome.err_lines(),
               std::vector<std::string>{"notice: the viewer has gone; rendering goes on"});
     EXPECT_EQ(beauty_in(picture_).size(), 640u * 360 * 4);
+}
+
+// Reads a picture whenever another is put in its place.
+class Onlooker {
+public:
+    Onlooker(const TestFolder& folder, const std::string& name)
+        : path_(folder / name), name_(name), events_(inotify_init1(IN_CLOEXEC | IN_NONBLOCK))
+    {
+        EXPECT_GE(inotify_add_watch(events_, folder.path().c_str(), IN_MOVED_TO), 0);
+        looking_ = std::thread([this] { look(); });
+    }
+    ~Onlooker()
+    {
+        finish();
+        close(events_);
+    }
+
+    void finish()
+    {
+        is_over_ = true;
+        if (looking_.joinable()) looking_.join();
+    }
+    int replaced() const { return replaced_; }
+    const std::set<std::vector<float>>& seen() const { return seen_; }
+
+private:
+    void look()
+    {
+        while (take_events() || !is_over_) {
+            pollfd event = {events_, POLLIN, 0};
+            poll(&event, 1, 10);
+        }
+    }
+
+    bool take_events()
+    {
+        alignas(inotify_event) char buffer[4096];
+        const ssize_t bytes = read(events_, buffer, sizeof buffer);
+        for (ssize_t at = 0; at < bytes;) {
+            const auto* event = reinterpret_cast<const inotify_event*>(buffer + at);
+            replaced_ += event->name == name_;
+            at += ssize_t(sizeof *event + event->len);
+        }
+        if (bytes > 0) seen_.insert(beauty_in(path_));  // throws where it is not whole
+        return bytes > 0;
+    }
+
+    std::string path_, name_;
+    int events_;
+    int replaced_ = 0;
+    std::set<std::vector<float>> seen_;
+    std::atomic<bool> is_over_ = false;
+    std::thread looking_;
+};
+
+TEST_F(Progress, TheFileIsReplacedWhileTheRenderGoesOn)
+{
+    Onlooker onlooker(folder_, "a.exr");
+    const Outcome outcome = render({"--size", "96x54", "--time", "2s", "--memory", "1M",
+                                    "--threads", "1", "--refresh", "0.1s", "--quiet"});
+    onlooker.finish();
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.text();
+    EXPECT_GE(onlooker.replaced(), 4);
+    EXPECT_GE(onlooker.seen().size(), 3u) << "each with more samples than the one before";
+    EXPECT_TRUE(onlooker.seen().contains(beauty_in(picture_)));
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"a.exr"});
 }
 
 }  // namespace
