@@ -9,7 +9,7 @@
 
 namespace diptych {
 
-// A new version of a file, written by whom holds its FileLock.
+// A new version of a file, by the one writer who holds its FileLock.
 class SafeFile : public image::WholeFile {
 public:
     explicit SafeFile(const std::string& path) : WholeFile(path, image::Survives::Machine) {}

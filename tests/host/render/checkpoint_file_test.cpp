@@ -142,6 +142,12 @@ TEST_F(CheckpointFile, IsLockedForOneProcess)
         const FileLock lock(path_);
         EXPECT_NE(error_of([&] { FileLock again(path_); }).find("another process"),
                   std::string::npos);
+        const std::string link = folder_ / "link";
+        std::filesystem::create_symlink(path_, link);
+        EXPECT_NE(error_of([&] { FileLock again(link); }).find("another process"),
+                  std::string::npos)
+            << "by another name";
+        std::filesystem::remove(link);
     }
     EXPECT_EQ(error_of([&] { FileLock again(path_); }), "");
     EXPECT_TRUE(folder_.files().empty());
