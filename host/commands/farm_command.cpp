@@ -1,7 +1,9 @@
 #include "host/commands/farm_command.hpp"
 
 #include "backends/textures/subprocess.hpp"
+#include "host/commands/farm_check.hpp"
 #include "host/commands/farm_script.hpp"
+#include "host/commands/picture_flags.hpp"
 #include "host/commands/render_command.hpp"
 #include "host/commands/slurm.hpp"
 #include "host/render/checkpoint.hpp"
@@ -22,48 +24,6 @@ namespace diptych {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What the tasks will be told, read as they will read it: mistakes show here, not in their logs.
-void check_render_flags(const FarmCommand& command)
-{
-    CLI::App app;
-    RenderCommand render;
-    add_render_command(app, render);
-    std::vector<std::string> words = {"render"};
-    words.insert(words.end(), command.render.begin(), command.render.end());
-    std::reverse(words.begin(), words.end());
-    try {
-        app.parse(words);
-    } catch (const CLI::ParseError& error) {
-        throw std::runtime_error(fmt::format("farm: {}; see diptych render --help", error.what()));
-    }
-    const CheckpointFlags& flags = render.checkpoint;
-    if (!flags.file.empty() || !flags.range.empty() || flags.is_restart || !render.json.empty() ||
-        !render.pixel.empty())
-        throw std::runtime_error("farm: --checkpoint, --restart, --range, --pixel and --json are "
-                                 "the tasks' own; leave them out");
-    parse_size(render.scene.size);
-    with_device_list(render.device);
-    if (render.error.error_option->count() > 0 || !render.error.time.empty() ||
-        render.error.is_unbiased || render.is_audited)
-        throw std::runtime_error("farm: --error, --time, --unbiased and --audit are not for slices "
-                                 "of the samples; give --samples");
-    if (!render.scene.scene.empty() && !fs::exists(render.scene.scene))
-        throw std::runtime_error(render.scene.scene + ": no such file; name a scene");
-}
-
-void check(const FarmCommand& command)
-{
-    const int groups = (command.samples + QUANTUM - 1) / QUANTUM;
-    if (command.tasks > groups)
-        throw std::runtime_error(
-            fmt::format("--tasks {}: --samples {} are {} groups of {}, which are not divided; ask "
-                        "for at most {} tasks",
-                        command.tasks, command.samples, groups, QUANTUM, groups));
-    for (const std::string& path : command.outputs) image::check_writable(path);
-    check_render_flags(command);
-    expect_slurm();
-}
 
 // The files that the tasks share.
 struct Folder {
@@ -120,6 +80,8 @@ Jobs submit(const FarmCommand& command, const Folder& folder)
                                "--output=" + folder.log("merge"), script, "merge",
                                std::to_string(command.tasks), folder.path.string()});
     for (const std::string& path : command.outputs) words.insert(words.end(), {"-o", path});
+    for (const std::string& word : picture_words(command.view, command.write))
+        words.push_back(word);
     jobs.merge = submit_job(words);
     return jobs;
 }
@@ -236,6 +198,7 @@ CLI::App* add_farm_command(CLI::App& app, FarmCommand& command)
                      "Picture to write, as of diptych render. May be given more than once")
         ->allow_extra_args(false)
         ->required();
+    add_picture_flags(*farm, command.view, command.write);
     farm->add_option("--folder", command.folder,
                      "For checkpoints and logs; all machines must see it. Default: the first "
                      "picture's name and .farm. What it holds is continued");
@@ -254,7 +217,7 @@ CLI::App* add_farm_command(CLI::App& app, FarmCommand& command)
 
 int run_farm_command(const FarmCommand& command)
 {
-    check(command);
+    check_farm(command);
     const Folder folder = make_folder(command);
     const std::vector<fs::file_time_type> before = times_of(command.outputs);
     const Jobs jobs = submit(command, folder);

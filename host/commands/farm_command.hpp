@@ -1,6 +1,8 @@
 // `diptych farm`: a picture by many machines, through Slurm.
 #pragma once
 
+#include "host/image/image.hpp"
+
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ struct FarmCommand {
     int samples = 64;
     std::string folder;
     std::vector<std::string> outputs;
+    std::string view = "standard";  // of the pictures, as are these: for the merging
+    image::WriteOptions write;
     std::vector<std::string> sbatch;  // words for sbatch, as --partition=long
     std::string script;
     bool is_detached = false;

@@ -22,6 +22,15 @@ void add_picture_flags(CLI::App& app, std::string& view, image::WriteOptions& wr
     app.add_flag("--16bit", write.sixteen_bit, "PNG and TIFF: 16 bits a channel");
 }
 
+std::vector<std::string> picture_words(const std::string& view, const image::WriteOptions& write)
+{
+    std::vector<std::string> words = {fmt::format("--exposure={}", write.exposure),
+                                      "--view=" + view};
+    if (write.half) words.push_back("--half");
+    if (write.sixteen_bit) words.push_back("--16bit");
+    return words;
+}
+
 image::WriteOptions picture_options(const std::string& view, image::WriteOptions write,
                                     const std::vector<std::string>& files)
 {

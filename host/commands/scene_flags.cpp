@@ -255,32 +255,38 @@ void add_device_options(CLI::App& app, DeviceFlags& flags)
         refuse_empty(app.get_option(name));
 }
 
-SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
+void check_scene_flags(const SceneFlags& flags, bool is_adaptive)
 {
-    LoadOptions load = load_options_from(flags);
-    if (!load.solo.empty()) load.environment = "none";
+    const LoadOptions load = load_options_from(flags);
     if (flags.samples < 1 || flags.samples > most_samples)
         refuse("--samples", std::to_string(flags.samples),
                fmt::format("out of range; give 1 to {}", most_samples));
-    const int bounces = parse_bounces(flags.bounces);
-    const int filter = parse_filter(flags.filter);
+    parse_bounces(flags.bounces);
+    parse_filter(flags.filter);
     if (flags.scene.empty() && !(load.textures.empty() && load.texture_values.empty() &&
                                  load.solo.empty() && load.aovs.empty()))
         throw std::runtime_error(
             "--texture, --set, --solo, --aov: only for a scene's file; name one");
     if (flags.scene.empty() && !(load.camera.empty() && load.scene_index < 0))
         throw std::runtime_error("--camera, --scene: only for a scene's file; name one");
-    SceneData scene = flags.scene.empty() ? demo_scene(load) : load_scene(flags.scene, load);
-    if (!load.solo.empty()) leave_solo(scene);
-    Settings& settings = scene.settings.at(0);
-    settings.seed = flags.seed;
-    settings.max_bounces = load.solo.empty() ? bounces : 0;
-    settings.filter = filter;
-    settings.samples = flags.samples;
     if (flags.is_one_sequence && is_adaptive)
         throw std::runtime_error(
             "--one-sequence: --error and --time need the standard error, which "
             "one sequence does not know; leave it out");
+}
+
+SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive)
+{
+    check_scene_flags(flags, is_adaptive);
+    LoadOptions load = load_options_from(flags);
+    if (!load.solo.empty()) load.environment = "none";
+    SceneData scene = flags.scene.empty() ? demo_scene(load) : load_scene(flags.scene, load);
+    if (!load.solo.empty()) leave_solo(scene);
+    Settings& settings = scene.settings.at(0);
+    settings.seed = flags.seed;
+    settings.max_bounces = load.solo.empty() ? parse_bounces(flags.bounces) : 0;
+    settings.filter = parse_filter(flags.filter);
+    settings.samples = flags.samples;
     settings.sequence_quanta =
         is_adaptive ? 0 : sequence_quanta_of(flags.samples, !flags.is_one_sequence);
     settings.width = load.width;

@@ -46,6 +46,9 @@ void add_view_flags(CLI::App& app, SceneFlags& flags);  // without the scene's n
 void add_device_flags(CLI::App& app, DeviceFlags& flags);
 void add_device_options(CLI::App& app, DeviceFlags& flags);  // without --backend
 
+// Throws std::runtime_error for what the flags alone show to be wrong: a render with an error or
+// time target, or with --samples alone.
+void check_scene_flags(const SceneFlags& flags, bool is_adaptive = false);
 // Checks what the flags say and loads the scene, settings filled in: for a render with an error or
 // time target, or with --samples alone. Throws std::runtime_error.
 SceneData load_from_flags(const SceneFlags& flags, bool is_adaptive = false);

@@ -137,9 +137,31 @@ def diptych(*words, environment=None, code=0):
     return done.stderr
 
 
+def layers_of(picture):
+    """Of an OpenEXR file, by its header's list of channels; those of a display picture: its colours."""
+    if not picture.endswith(".exr"):
+        return {""}
+    with open(picture, "rb") as file:
+        header = file.read(65536)
+    at = header.index(b"channels\0chlist\0") + 20
+    layers = set()
+    while header[at]:  # a name, then 16 bytes
+        end = header.index(b"\0", at)
+        name = header[at:end].decode()
+        layers.add({"R": "", "G": "", "B": "", "A": "", "Z": "depth"}.get(
+            name, name.rpartition(".")[0] or name))
+        at = end + 17
+    return layers
+
+
 def expect_same(alone, together):
     """Every pixel of every layer; the files' metadata differ."""
-    diptych("compare", alone, together, "--metric", "max", "--max", "0")
+    layers = layers_of(alone)
+    assert layers == layers_of(together), f"{layers} and {layers_of(together)}"
+    if alone.endswith(".exr"):
+        assert {"", "depth", "normal", "object_id", "sample_count", "predicted_error"} <= layers, layers
+    for layer in layers:
+        diptych("compare", alone, together, "--layer", layer, "--metric", "max", "--max", "0")
 
 
 def farm(slurm, picture, *words, tasks=4, samples=SAMPLES):
@@ -188,6 +210,16 @@ def the_picture_is_that_of_one_render(slurm, folder):
     expect_same(alone, picture)
 
 
+def flags_of_pictures_are_for_the_merging(slurm, folder):
+    """Exposure and view make the PNG, and what error the EXR predicts; --half its size."""
+    at = lambda name: os.path.join(folder, name)
+    look = ["--exposure", "1.5", "--view", "filmic", "--half", "--16bit", "--quiet"]
+    diptych("render", *PICTURE, "--samples", SAMPLES, *look, "-o", at("look.exr"), "-o", at("look.png"))
+    diptych(*farm(slurm, at("far.exr"), *look, "-o", at("far.png"), tasks=3)[1:], environment=slurm.environment)
+    expect_same(at("look.exr"), at("far.exr"))
+    expect_same(at("look.png"), at("far.png"))
+
+
 def what_cannot_be_rendered_is_told(slurm, folder):
     picture = os.path.join(folder, "bad.exr")
     scene = os.path.join(folder, "bad.gltf")
@@ -208,6 +240,18 @@ def without_slurm():
             (["--samples", "16"], "ask for at most 1 tasks"),
             (["--range", "0..16"], "the tasks' own"),
             (["--no-such-flag"], "--no-such-flag"),
+            (["--16bit"], "--16bit: of .png and .tif"),
+            (["--view", "cinema"], "cinema"),
+            (["--exposure", "1000"], "--exposure 1000: out of range"),
+            (["--share", "90"], "give --samples"),
+            (["--refresh", "1s"], "--refresh"),
+            (["--capture", "a.json"], "--capture"),
+            (["--every", "soon"], "--every soon: not a time"),
+            (["--bounces", "few"], "--bounces few"),
+            (["--eye", "1,2,3"], "--eye and --target"),
+            (["--memory", "lots"], "--memory lots"),
+            (["--backend", "abacus"], "--backend abacus: no such backend"),
+            (["--solo", "node"], "only for a scene's file"),
             (["nowhere.gltf"], "nowhere.gltf: no such file"),
         ):
             said = diptych(*words, *more, environment=nowhere, code=2)
@@ -226,8 +270,8 @@ def main():
             if not wait_until(slurm.is_ready, 60):
                 with open(os.path.join(folder, "start-1.log"), encoding="utf-8") as log:
                     skip(f"Slurm does not start here: {log.read()[-300:]}")
-            for case in (the_picture_is_that_of_one_render, a_task_is_killed_on_the_way,
-                         what_cannot_be_rendered_is_told):
+            for case in (the_picture_is_that_of_one_render, flags_of_pictures_are_for_the_merging,
+                         a_task_is_killed_on_the_way, what_cannot_be_rendered_is_told):
                 begin = time.monotonic()
                 case(slurm, folder)
                 print(f"{case.__name__}: ok, {time.monotonic() - begin:.0f} s", flush=True)
