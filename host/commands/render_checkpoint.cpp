@@ -48,11 +48,13 @@ std::string how_far(const CheckpointHead& head, const Slice& slice)
                        blocks.size(), done_end(slice));
 }
 
-void tell_beginning(const std::string& file, const CheckpointHead& old, const std::string& backend)
+// backends: those that will have had a part in it.
+void tell_beginning(const std::string& file, const CheckpointHead& old,
+                    const std::vector<std::string>& backends)
 {
-    if (old.backends != std::vector{backend})
-        fmt::print(stderr, "notice: {} was begun on {}: the picture will be by both\n", file,
-                   joined(old.backends));
+    if (backends.size() > 1)
+        fmt::print(stderr, "notice: {} was begun on {}: the picture will be by {}\n", file,
+                   joined(old.backends), joined(backends));
     for (const Slice& slice : old.slices)
         fmt::print(stderr, "going on from {}: {}, {:.1f} s so far\n", file, how_far(old, slice),
                    old.seconds);
@@ -141,14 +143,10 @@ std::optional<RenderState> RenderCheckpoint::begin(const SceneData& scene,
     std::optional<RenderState> state;
     if (found_) {
         const CheckpointHead& old = found_->head;
-        const std::string difference = difference_between(old.subject, head.subject);
-        if (!difference.empty())
-            throw std::runtime_error(
-                fmt::format("{}: is of another picture: it and this render differ in {}; name "
-                            "another file, or begin anew with --restart",
-                            flags_.file, difference));
+        expect_same_subject(old, flags_.file, head.subject);
+        expect_same_plan(old, flags_.file, settings, options);
         go_on_from(old, head);
-        if (!is_quiet) tell_beginning(flags_.file, old, backend_name);
+        if (!is_quiet) tell_beginning(flags_.file, old, head.backends);
         state = continued(std::move(*found_), flags_.file, settings, options);
         found_.reset();
         earlier_seconds_ = head.seconds;

@@ -153,15 +153,25 @@ void add_checkpoint(Checkpoint& all, const Checkpoint& more)
     head.paths += more.head.paths;
 }
 
-RenderState continued(Checkpoint checkpoint, const std::string& name, const Settings& settings,
+void expect_same_subject(const CheckpointHead& head, const std::string& name,
+                         const CheckpointSubject& subject)
+{
+    const std::string difference = difference_between(head.subject, subject);
+    if (!difference.empty())
+        throw std::runtime_error(
+            fmt::format("{}: is of another picture: it and this render differ in {}; name "
+                        "another file, or begin anew with --restart",
+                        name, difference));
+}
+
+void expect_same_plan(const CheckpointHead& head, const std::string& name, const Settings& settings,
                       const RenderOptions& options)
 {
     const auto refuse = [&](const std::string& what) {
         throw std::runtime_error(name + ": " + what + ", or begin anew with --restart");
     };
-    if (checkpoint.head.slices.size() != 1)
-        refuse("holds samples that are apart, merged; name another file");
-    Slice slice = std::move(checkpoint.head.slices[0]);
+    if (head.slices.size() != 1) refuse("holds samples that are apart, merged; name another file");
+    const Slice& slice = head.slices[0];
     const Slice wanted = slice_of(options);
     const int done = done_end(slice);
     if (slice.first != wanted.first)
@@ -173,10 +183,18 @@ RenderState continued(Checkpoint checkpoint, const std::string& name, const Sett
     if (wanted.end != slice.end && done % QUANTUM != 0)
         refuse(fmt::format("holds {}, which ends within a group of {} samples; name another file",
                            samples_text(wanted.first, done), QUANTUM));
-    if (checkpoint.head.block_shift != grid_of(settings, options).shift ||
-        slice.is_timed != wanted.is_timed || slice.is_unbiased != wanted.is_unbiased)
+    if (head.block_shift != grid_of(settings, options).shift || slice.is_timed != wanted.is_timed ||
+        slice.is_unbiased != wanted.is_unbiased)
         refuse("was rendered to another kind of target (--samples, --error, --time, --unbiased); "
                "ask for the same kind");
+}
+
+RenderState continued(Checkpoint checkpoint, const std::string& name, const Settings& settings,
+                      const RenderOptions& options)
+{
+    expect_same_plan(checkpoint.head, name, settings, options);
+    Slice slice = std::move(checkpoint.head.slices[0]);
+    const Slice wanted = slice_of(options);
     const int whole = int(plan_of(wanted).size());
     if (wanted.end != slice.end || wanted.error != slice.error || wanted.viewer != slice.viewer)
         for (BlockState& block : slice.schedule.blocks) {

@@ -206,6 +206,22 @@ TEST_F(CheckpointCommand, MergeTellsWhatIsMissingAndRefusesWhatDoesNotFit)
     EXPECT_EQ(bytes_of_file(a), bytes);
 }
 
+TEST_F(CheckpointCommand, NamesAllBackendsThatHaveAPartInIt)
+{
+    const auto go_on = [&](const char* samples, const char* backend) {
+        const Outcome outcome = render({"--samples", samples, "--backend", backend, "--memory",
+                                        "16M", "--checkpoint", file_, "-o", picture_});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
+        return outcome.err;
+    };
+    EXPECT_EQ(go_on("128", "cpu").find("was begun on"), std::string::npos);
+    EXPECT_NE(go_on("144", "twin").find("was begun on cpu: the picture will be by cpu, twin"),
+              std::string::npos);
+    EXPECT_NE(go_on("160", "double")
+                  .find("was begun on cpu, twin: the picture will be by cpu, double, twin"),
+              std::string::npos);
+}
+
 // An adaptive one has no number of samples to be a part of.
 TEST_F(CheckpointCommand, GoesOnFromBlocksThatAreDone)
 {
@@ -255,6 +271,9 @@ TEST_F(CheckpointCommand, RefusesToGoOnFromAnotherPicture)
     refuse({"--seed", "2"}, "differ in seed (1 and 2)");
     refuse({"--size", "32x48"}, "differ in size (48x32 and 32x48)");
     refuse({"--samples", "128"}, "holds samples 0..144");
+    const Outcome told = render({"--samples", "128", "--checkpoint", file_, "-o", picture_});
+    EXPECT_EQ(told.exit_code, 2) << told.text();
+    EXPECT_EQ(told.err.find("going on from"), std::string::npos) << told.err;
     refuse({"--samples", "64"}, "samples in a sequence (16 and 64)");
     refuse({"--range", "16..320"}, "holds samples 0..144, not from 16 on");
     refuse({"--pixel", "1,1"}, "--checkpoint: not for a single pixel");
