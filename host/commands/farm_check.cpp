@@ -3,12 +3,14 @@
 #include "host/commands/picture_flags.hpp"
 #include "host/commands/render_command.hpp"
 #include "host/commands/slurm.hpp"
+#include "host/render/checkpoint_merge.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 
 namespace diptych {
@@ -79,7 +81,55 @@ void check_pictures(const FarmCommand& command, const RenderCommand& render)
         throw std::runtime_error("--aov: pictures with layers are .exr files; name one with -o");
 }
 
+// As ci/slurm/render.sbatch divides them.
+RenderOptions options_of(const FarmCommand& command, int task)
+{
+    const auto groups = std::int64_t((command.samples + QUANTUM - 1) / QUANTUM);
+    RenderOptions options;
+    options.first_sample = int(groups * task / command.tasks) * QUANTUM;
+    options.samples = std::min(int(groups * (task + 1) / command.tasks) * QUANTUM, command.samples);
+    return options;
+}
+
+// The scene is read only where there is something to go on from.
+void check_slices(const FarmCommand& command, const RenderCommand& render)
+{
+    std::optional<CheckpointSubject> subject;
+    for (int task = 0; task < command.tasks; ++task) {
+        const std::string name = slice_name(command, task);
+        std::error_code ignored;
+        if (!std::filesystem::exists(name, ignored)) continue;
+        try {
+            const CheckpointHead head = read_checkpoint_head(name);
+            if (!subject)
+                subject =
+                    checkpoint_subject(load_from_flags(render.scene), "diptych " DIPTYCH_VERSION);
+            expect_same_subject(head, name, *subject);
+            expect_same_plan(head, name, subject->settings, options_of(command, task));
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error("farm: " + with_farms_advice(error.what(), command));
+        }
+    }
+}
+
 }  // namespace
+
+std::string folder_of(const FarmCommand& command)
+{
+    return command.folder.empty() ? command.outputs.at(0) + ".farm" : command.folder;
+}
+
+std::string slice_name(const FarmCommand& command, int task)
+{
+    return std::filesystem::path(folder_of(command)) / fmt::format("slice-{}.checkpoint", task);
+}
+
+std::string with_farms_advice(const std::string& error, const FarmCommand& command)
+{
+    if (error.find("--restart") == std::string::npos) return error;
+    return fmt::format("{}; name another folder with --folder, or delete {} to begin anew",
+                       error.substr(0, error.rfind("; ")), folder_of(command));
+}
 
 void check_farm(const FarmCommand& command)
 {
@@ -92,6 +142,7 @@ void check_farm(const FarmCommand& command)
     const Task task(command);
     check_task(task.render);
     check_pictures(command, task.render);
+    check_slices(command, task.render);
     expect_slurm();
 }
 

@@ -25,25 +25,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The files that the tasks share.
-struct Folder {
-    fs::path path;
-
-    std::string slice(int task) const { return path / fmt::format("slice-{}.checkpoint", task); }
-    std::string log(const std::string& task) const { return path / fmt::format("log-{}", task); }
-};
-
-Folder make_folder(const FarmCommand& command)
+fs::path make_folder(const FarmCommand& command)
 {
-    const Folder folder{command.folder.empty() ? command.outputs.at(0) + ".farm" : command.folder};
+    const fs::path folder = folder_of(command);
     std::error_code error;
-    fs::create_directories(folder.path, error);
+    fs::create_directories(folder, error);
     if (error)
         throw std::runtime_error(
             fmt::format("{}: cannot be made ({}); name a folder that all machines see with "
                         "--folder",
-                        folder.path.string(), error.message()));
-    const std::string script = folder.path / "render.sbatch";
+                        folder.string(), error.message()));
+    const std::string script = folder / "render.sbatch";
     if (command.script.empty())
         image::write_file_whole(script, farm_script);
     else
@@ -60,25 +52,35 @@ struct Jobs {
     std::string merge;
 };
 
-Jobs submit(const FarmCommand& command, const Folder& folder)
+// Each submission has logs of its own, by the number of its job: Slurm's %A and %j. What an earlier
+// one said is no news.
+fs::path task_log(const fs::path& folder, const std::string& job, const std::string& task)
+{
+    return folder / fmt::format("log-{}-{}", job, task);
+}
+fs::path merge_log(const fs::path& folder, const std::string& job)
+{
+    return folder / fmt::format("log-{}-merge", job);
+}
+
+Jobs submit(const FarmCommand& command, const fs::path& folder)
 {
     std::error_code ignored;
     if (const fs::path self = fs::read_symlink("/proc/self/exe", ignored); !ignored)
         setenv("DIPTYCH", self.c_str(), 0);
-    const std::string script = folder.path / "render.sbatch";
+    const std::string script = folder / "render.sbatch";
     std::vector<std::string> words = command.sbatch;
-    words.insert(words.end(),
-                 {fmt::format("--array=0-{}", command.tasks - 1), "--output=" + folder.log("%a"),
-                  script, "render", std::to_string(command.samples), folder.path.string()});
+    words.insert(words.end(), {fmt::format("--array=0-{}", command.tasks - 1),
+                               "--output=" + task_log(folder, "%A", "%a").string(), script,
+                               "render", std::to_string(command.samples), folder.string()});
     words.insert(words.end(), command.render.begin(), command.render.end());
-    words.push_back("--quiet");
     Jobs jobs;
     jobs.render = submit_job(words);
 
     words = command.sbatch;
     words.insert(words.end(), {"--dependency=afterok:" + jobs.render, "--kill-on-invalid-dep=yes",
-                               "--output=" + folder.log("merge"), script, "merge",
-                               std::to_string(command.tasks), folder.path.string()});
+                               "--output=" + merge_log(folder, "%j").string(), script, "merge",
+                               std::to_string(command.tasks), folder.string()});
     for (const std::string& path : command.outputs) words.insert(words.end(), {"-o", path});
     for (const std::string& word : picture_words(command.view, command.write))
         words.push_back(word);
@@ -86,12 +88,12 @@ Jobs submit(const FarmCommand& command, const Folder& folder)
     return jobs;
 }
 
-double fraction_of(const FarmCommand& command, const Folder& folder)
+double fraction_of(const FarmCommand& command)
 {
     double sum = 0;
     for (int task = 0; task < command.tasks; ++task) {
         try {
-            sum += fraction_done(folder.slice(task));
+            sum += fraction_done(slice_name(command, task));
         } catch (const std::runtime_error&) {
             // not begun
         }
@@ -109,18 +111,20 @@ std::string last_line(const std::string& path)
     return last;
 }
 
-[[noreturn]] void tell_what_failed(const FarmCommand& command, const Folder& folder)
+[[noreturn]] void tell_what_failed(const FarmCommand& command, const fs::path& folder,
+                                   const Jobs& jobs)
 {
     for (int task = 0; task < command.tasks; ++task) {
-        const std::string log = folder.log(std::to_string(task)), line = last_line(log);
+        const std::string line = last_line(task_log(folder, jobs.render, std::to_string(task)));
         if (line.find("diptych: ") == 0)
-            throw std::runtime_error(fmt::format("farm: task {}: {}", task, line.substr(9)));
+            throw std::runtime_error(
+                fmt::format("farm: task {}: {}", task, with_farms_advice(line.substr(9), command)));
     }
-    const std::string line = last_line(folder.log("merge"));
+    const std::string line = last_line(merge_log(folder, jobs.merge));
     throw std::runtime_error(
         fmt::format("farm: there is no picture ({}); see the logs in {}, and submit again to go on "
                     "from the checkpoints there",
-                    line.empty() ? "a task has failed" : line, folder.path.string()));
+                    line.empty() ? "a task has failed" : line, folder.string()));
 }
 
 void show(double fraction, const JobCounts& counts, bool is_terminal)
@@ -135,7 +139,7 @@ void show(double fraction, const JobCounts& counts, bool is_terminal)
 }
 
 // Until neither job is in the queue. False when interrupted.
-bool watch(const FarmCommand& command, const Folder& folder, const Jobs& jobs)
+bool watch(const FarmCommand& command, const Jobs& jobs)
 {
     const std::atomic<bool>& is_interrupted = watch_for_interrupts();
     const bool is_terminal = isatty(STDERR_FILENO) != 0;
@@ -144,7 +148,7 @@ bool watch(const FarmCommand& command, const Folder& folder, const Jobs& jobs)
         JobCounts counts;
         if (count_jobs({jobs.render, jobs.merge}, counts)) {
             is_over = counts.running + counts.waiting == 0;
-            const double fraction = fraction_of(command, folder);
+            const double fraction = fraction_of(command);
             const std::string now =
                 fmt::format("{:.2f} {} {}", fraction, counts.running, counts.waiting);
             if (now != last) show(fraction, counts, is_terminal);
@@ -218,18 +222,18 @@ CLI::App* add_farm_command(CLI::App& app, FarmCommand& command)
 int run_farm_command(const FarmCommand& command)
 {
     check_farm(command);
-    const Folder folder = make_folder(command);
+    const fs::path folder = make_folder(command);
     const std::vector<fs::file_time_type> before = times_of(command.outputs);
     const Jobs jobs = submit(command, folder);
     fmt::print(stderr, "job {}: {} tasks; job {} merges them; checkpoints and logs in {}\n",
-               jobs.render, command.tasks, jobs.merge, folder.path.string());
+               jobs.render, command.tasks, jobs.merge, folder.string());
     if (command.is_detached) return 0;
-    if (!watch(command, folder, jobs)) {
+    if (!watch(command, jobs)) {
         fmt::print(stderr, "\nno longer watching; the jobs go on (scancel {} {} ends them)\n",
                    jobs.render, jobs.merge);
         return 130;
     }
-    if (!are_written_since(command.outputs, before)) tell_what_failed(command, folder);
+    if (!are_written_since(command.outputs, before)) tell_what_failed(command, folder, jobs);
     for (const std::string& path : command.outputs) fmt::print(stderr, "wrote {}\n", path);
     return 0;
 }

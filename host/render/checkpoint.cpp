@@ -148,9 +148,9 @@ void expect(bool condition)
     if (!condition) throw std::runtime_error("header");
 }
 
-// The header's side of a checkpoint: everything but the arrays, which have their sizes. left: the
-// file's bytes after the header, which memory is not asked to exceed.
-Checkpoint checkpoint_from(const json& in, size_t left)
+// Blocks have no contents yet. left: the file's bytes after the header, which memory is not asked
+// to exceed.
+CheckpointHead head_from(const json& in, size_t left)
 {
     CheckpointHead head{{in.at("program"), in.at("scene"), settings_from(in.at("settings"))},
                         in.at("backends"),
@@ -159,18 +159,25 @@ Checkpoint checkpoint_from(const json& in, size_t left)
                         in.at("seconds"),
                         in.at("rays"),
                         in.at("paths")};
-    const int width = in.at("width"), height = in.at("height"), batches = in.at("batches");
-    expect(width > 0 && height > 0 && width < 1 << 16 && height < 1 << 16);
-    expect(batches > 0 && batches <= batch_count);
     for (const json& aov : in.value("aovs", json::array())) {
         head.subject.aovs.push_back({aov.at(0), aov.at(1)});
         expect(head.subject.aovs.back().channels >= 1 && head.subject.aovs.back().channels <= 4);
     }
-    expect(Film::bytes({0, 0, width, height}, batches, head.subject.aovs.size()) <= left);
     for (const json& slice : in.at("slices")) {
         expect(slice.at("blocks").get<size_t>() <= left);
         head.slices.push_back(slice_from(slice));
     }
+    return head;
+}
+
+// The header's side of a checkpoint: everything but the arrays, which have their sizes.
+Checkpoint checkpoint_from(const json& in, size_t left)
+{
+    CheckpointHead head = head_from(in, left);
+    const int width = in.at("width"), height = in.at("height"), batches = in.at("batches");
+    expect(width > 0 && height > 0 && width < 1 << 16 && height < 1 << 16);
+    expect(batches > 0 && batches <= batch_count);
+    expect(Film::bytes({0, 0, width, height}, batches, head.subject.aovs.size()) <= left);
     Film film(width, height, {0, 0, width, height}, batches, head.subject.aovs);
     const json& faults = in.at("faults");
     film.data().faults = {faults.at(0), faults.at(1), faults.at(2), faults.at(3)};
@@ -228,6 +235,13 @@ public:
         if (value<std::uint64_t>() != right)
             refuse(path_, fmt::format("is corrupt: the checksum of its {} does not match", of));
     }
+    // What is passed over is not in the checksum.
+    void skip(size_t bytes)
+    {
+        if (bytes > left()) refuse(path_, fmt::format("is cut short: it has {} bytes", size_));
+        in_.seekg(std::streamoff(bytes), std::ios::cur);
+        at_ += bytes;
+    }
     size_t left() const { return size_ - at_; }
 
 private:
@@ -266,6 +280,18 @@ json read_header(const std::string& path, Reader& reader)
     reader.read(header.data(), header.size());
     reader.expect_checksum("header");
     return understood(path, [&] { return json::parse(header); });
+}
+
+void read_blocks(Reader& reader, std::vector<Slice>& slices)
+{
+    for (Slice& slice : slices)
+        for (BlockState& block : slice.schedule.blocks) {
+            const auto stored = reader.value<StoredBlock>();
+            block.quanta = stored.quanta;
+            block.target = stored.target;
+            block.is_done = stored.is_done != 0;
+            block.error = {stored.error, stored.worst_pixel};
+        }
 }
 
 size_t bytes_after_header(const Checkpoint& checkpoint)
@@ -387,16 +413,23 @@ Checkpoint read_checkpoint(const std::string& path)
                                  reader.left(), bytes_after_header(checkpoint)));
     for_each_array(checkpoint.film.data(),
                    [&](const char*, auto& array) { reader.read(array.data(), bytes_of(array)); });
-    for (Slice& slice : checkpoint.head.slices)
-        for (BlockState& block : slice.schedule.blocks) {
-            const auto stored = reader.value<StoredBlock>();
-            block.quanta = stored.quanta;
-            block.target = stored.target;
-            block.is_done = stored.is_done != 0;
-            block.error = {stored.error, stored.worst_pixel};
-        }
+    read_blocks(reader, checkpoint.head.slices);
     reader.expect_checksum("sums");
     return checkpoint;
+}
+
+CheckpointHead read_checkpoint_head(const std::string& path)
+{
+    Reader reader(path);
+    const json header = read_header(path, reader);
+    CheckpointHead head = understood(path, [&] { return head_from(header, reader.left()); });
+    reader.skip(understood(path, [&] {
+        size_t bytes = 0;
+        for (const json& array : header.at("arrays")) bytes += array.at(1).get<size_t>();
+        return bytes;
+    }));
+    read_blocks(reader, head.slices);
+    return head;
 }
 
 double fraction_done(const std::string& path)

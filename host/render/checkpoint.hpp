@@ -74,6 +74,8 @@ void write_checkpoint(SafeFile& file, const CheckpointHead& head, const Film& fi
 // Throws std::runtime_error (path: what; what to do) for whatever is not such a file, whole and of
 // this version.
 Checkpoint read_checkpoint(const std::string& path);
+// The same of its head alone; whether its sums are whole remains unknown.
+CheckpointHead read_checkpoint_head(const std::string& path);
 // The part of its quanta that is done, 0 to 1; the second from a file's header alone, throwing
 // likewise.
 double fraction_done(const CheckpointHead& head);

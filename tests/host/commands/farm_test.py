@@ -164,6 +164,14 @@ def expect_same(alone, together):
         diptych("compare", alone, together, "--layer", layer, "--metric", "max", "--max", "0")
 
 
+def log_of(picture, what):
+    """Of the last submission."""
+    logs = [name.split("-") for name in os.listdir(picture + ".farm") if name.startswith("log-")]
+    job = max(int(job) for _, job, kind in logs if kind == what)
+    with open(os.path.join(picture + ".farm", f"log-{job}-{what}"), encoding="utf-8") as log:
+        return log.read()
+
+
 def farm(slurm, picture, *words, tasks=4, samples=SAMPLES):
     return [PROGRAM, "farm", *PICTURE, "--samples", str(samples), "--tasks", str(tasks), "-o", picture,
             "--folder", picture + ".farm", *words]
@@ -197,8 +205,8 @@ def a_task_is_killed_on_the_way(slurm, folder):
     assert wait_until(lambda: start_requeued_now(slurm), 60), "task 1 was not queued again"
     _, said = watcher.communicate(timeout=400)
     assert watcher.returncode == 0, said
-    with open(os.path.join(picture + ".farm", "log-1"), encoding="utf-8") as log:
-        assert "queued again" in log.read()
+    log = log_of(picture, "1")
+    assert f"going on from {slice_}" in log.partition("queued again")[2], log
     expect_same(alone, picture)
 
 
@@ -227,6 +235,18 @@ def what_cannot_be_rendered_is_told(slurm, folder):
         out.write("{}")
     said = diptych(*farm(slurm, picture, scene)[1:], environment=slurm.environment, code=2)
     assert "farm: task 0: " in said and "bad.gltf" in said, said
+
+    # another submission there, in which task 0 succeeds and only task 1 has something to say
+    slice_ = os.path.join(picture + ".farm", "slice-1.checkpoint")
+    diptych("render", *PICTURE, "--samples", SAMPLES, "--range", "128..256", "--checkpoint", slice_, "--quiet")
+    with open(slice_, "rb+") as file:
+        file.seek(-1, os.SEEK_END)
+        last = file.read(1)
+        file.seek(-1, os.SEEK_END)
+        file.write(bytes([last[0] ^ 1]))
+    said = diptych(*farm(slurm, picture)[1:], environment=slurm.environment, code=2)
+    assert f"farm: task 1: {slice_}: is corrupt" in said, said
+    assert "--restart" not in said and f"or delete {picture}.farm" in said, said
 
 
 def without_slurm():
@@ -257,6 +277,20 @@ def without_slurm():
             said = diptych(*words, *more, environment=nowhere, code=2)
             assert expected in said and said.count("\n") == 1, f"{more}: {said}"
         assert os.listdir(folder) == []
+
+        shared = picture + ".farm"
+        os.mkdir(shared)
+        diptych("render", *PICTURE, "--samples", 64, "--range", "0..32", "--quiet",
+                "--checkpoint", os.path.join(shared, "slice-0.checkpoint"))
+        words = ["farm", *PICTURE, "--samples", "64", "-o", picture]
+        for more, expected in (
+            (["--tasks", "2"], "no sbatch on the PATH"),  # it would go on from there
+            (["--tasks", "2", "--seed", "2"], "differ in seed (1 and 2); name another folder with --folder, or "),
+            (["--tasks", "2", "--bounces", "1"], f"or delete {shared} to begin anew"),
+            (["--tasks", "4"], "holds samples 0..32, more than up to 16; name another folder"),
+        ):
+            said = diptych(*words, *more, environment=nowhere, code=2)
+            assert expected in said and "--restart" not in said, f"{more}: {said}"
 
 
 def main():

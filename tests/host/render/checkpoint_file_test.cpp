@@ -47,6 +47,9 @@ TEST_F(CheckpointFile, ComesBackAsItWasWritten)
     EXPECT_EQ(in.head.backends, out.head.backends);
     EXPECT_EQ(in.head.seconds, 1.5);
     EXPECT_EQ(in.head.rays, 1ull << 40);
+    const CheckpointHead head = read_checkpoint_head(path_);
+    EXPECT_EQ(difference_between(head.subject, out.head.subject), "");
+    EXPECT_EQ(fraction_done(head), fraction_done(out.head));
     EXPECT_EQ(fraction_done(path_), fraction_done(out.head));
     EXPECT_GT(fraction_done(path_), 0);
     EXPECT_LT(fraction_done(path_), 1);
