@@ -30,18 +30,23 @@ std::string description(const Checkpoint& checkpoint)
                        fmt::join(checkpoint.head.backends, ", "));
 }
 
-void tell_what_is_missing(const std::vector<Slice>& slices)
+void tell_gap(int first, int end)
+{
+    if (first < end)
+        fmt::print(stderr, "notice: samples {}..{} are in none of the files\n", first, end);
+}
+
+void tell_what_is_missing(const CheckpointHead& head)
 {
     int end = 0;
-    for (const Slice& slice : slices) {
-        if (slice.first > end)
-            fmt::print(stderr, "notice: samples {}..{} are in none of the files\n", end,
-                       slice.first);
+    for (const Slice& slice : head.slices) {
+        tell_gap(end, slice.first);
         if (!is_complete(slice))
             fmt::print(stderr, "notice: samples {}..{} are not all rendered yet\n", slice.first,
                        slice.end);
         end = slice.end;
     }
+    tell_gap(end, head.planned);
 }
 
 image::Picture picture_of(const Checkpoint& checkpoint, const image::Viewer& viewer)
@@ -72,6 +77,12 @@ Checkpoint read_merged(const MergeCommand& command)
     return std::move(*all);
 }
 
+// A checkpoint would be taken for a picture by its name.
+void expect_known_format(const std::string& output)
+{
+    if (image::is_foreign_picture_name(output)) image::check_writable(output);  // tells the formats
+}
+
 // A slice that is overwritten can no longer be gone on with.
 void expect_no_input(const std::string& output, const std::vector<std::string>& inputs)
 {
@@ -89,6 +100,28 @@ void write_as_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     SafeFile file(path);
     write_checkpoint(file, checkpoint.head, checkpoint.film);
     file.put_in_place();
+}
+
+// Where some cannot be written, the others are before an error is thrown that names each.
+void write_all(const MergeCommand& command, const Checkpoint& all, const image::WriteOptions& write)
+{
+    std::optional<image::Picture> picture;
+    std::vector<std::string> failures;
+    for (const std::string& path : command.outputs) {
+        try {
+            if (!image::is_picture_name(path)) {
+                write_as_checkpoint(path, all);
+            } else {
+                if (!picture) picture = picture_of(all, {write.exposure, write.view});
+                image::write_picture(path, *picture, write);
+            }
+            if (!command.is_quiet) fmt::print(stderr, "wrote {}\n", path);
+        } catch (const std::runtime_error& error) {
+            failures.push_back(error.what());
+        }
+    }
+    if (!failures.empty())
+        throw std::runtime_error(fmt::format("{}", fmt::join(failures, "; and ")));
 }
 
 }  // namespace
@@ -117,23 +150,18 @@ CLI::App* add_merge_command(CLI::App& app, MergeCommand& command)
 int run_merge_command(const MergeCommand& command)
 {
     const image::WriteOptions write = picture_options(command.view, command.write, command.outputs);
-    std::vector<std::string> pictures, checkpoints;
     for (const std::string& path : command.outputs) {
         expect_no_input(path, command.inputs);
+        expect_known_format(path);
         image::check_file_writable(path);
-        (image::is_picture_name(path) ? pictures : checkpoints).push_back(path);
     }
 
     const Checkpoint all = read_merged(command);
     if (!command.is_quiet) {
         fmt::print(stderr, "together: {}\n", description(all));
-        tell_what_is_missing(all.head.slices);
+        tell_what_is_missing(all.head);
     }
-    for (const std::string& path : checkpoints) write_as_checkpoint(path, all);
-    if (!pictures.empty())
-        image::write_pictures(pictures, picture_of(all, {write.exposure, write.view}), write);
-    if (!command.is_quiet)
-        for (const std::string& path : command.outputs) fmt::print(stderr, "wrote {}\n", path);
+    write_all(command, all, write);
     return 0;
 }
 

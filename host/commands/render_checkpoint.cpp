@@ -140,6 +140,7 @@ std::optional<RenderState> RenderCheckpoint::begin(const SceneData& scene,
     head.backends = {backend_name};
     head.block_shift = grid_of(settings, options).shift;
     head.slices = {slice_of(options)};
+    head.planned = std::max(settings.samples, options.samples);
     std::optional<RenderState> state;
     if (found_) {
         const CheckpointHead& old = found_->head;

@@ -73,8 +73,8 @@ struct WriteOptions {
 void write_picture(const std::string& path, const Picture& picture,
                    const WriteOptions& options = {});
 
-// The same picture to all of the paths; where one cannot be written, the others are before that is
-// thrown.
+// The same picture to all of the paths; where some cannot be written, the others are before an
+// error is thrown that names each.
 void write_pictures(const std::vector<std::string>& paths, const Picture& picture,
                     const WriteOptions& options = {});
 
@@ -83,6 +83,9 @@ void write_pictures(const std::vector<std::string>& paths, const Picture& pictur
 bool is_picture_name(const std::string& path);
 bool holds_layers(const std::string& path);
 bool holds_sixteen_bits(const std::string& path);
+
+// Its extension is one of a picture format that can be read or written somewhere, but not here.
+bool is_foreign_picture_name(const std::string& path);
 
 // Throws now what write_picture would throw after the rendering: unknown extension, no such folder,
 // not writable, not a file.

@@ -37,12 +37,18 @@ constexpr Format FORMATS[] = {{".exr", "openexr", true, false}, {".png", "png", 
     throw std::runtime_error(path + ": " + what);
 }
 
-// Null for a name that is no picture's.
-const Format* find_format(const std::string& path)
+std::string small_extension(const std::string& path)
 {
     std::string extension = fs::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
+    return extension;
+}
+
+// Null for a name that is no picture's.
+const Format* find_format(const std::string& path)
+{
+    const std::string extension = small_extension(path);
     for (const Format& format : FORMATS)
         if (extension == format.extension) return &format;
     return nullptr;
@@ -233,15 +239,15 @@ void write_picture(const std::string& path, const Picture& picture, const WriteO
 void write_pictures(const std::vector<std::string>& paths, const Picture& picture,
                     const WriteOptions& options)
 {
-    std::string failure;
+    std::string failures;
     for (const std::string& path : paths) {
         try {
             write_picture(path, picture, options);
         } catch (const std::runtime_error& error) {
-            if (failure.empty()) failure = error.what();
+            failures += (failures.empty() ? "" : "; and ") + std::string(error.what());
         }
     }
-    if (!failure.empty()) throw std::runtime_error(failure);
+    if (!failures.empty()) throw std::runtime_error(failures);
 }
 
 void write_file_whole(const std::string& path, std::string_view bytes)
@@ -252,6 +258,17 @@ void write_file_whole(const std::string& path, std::string_view bytes)
 }
 
 bool is_picture_name(const std::string& path) { return find_format(path) != nullptr; }
+
+bool is_foreign_picture_name(const std::string& path)
+{
+    const std::string extension = small_extension(path);
+    if (extension.empty() || find_format(path)) return false;
+    // "openexr:exr,sxr,mxr;tiff:tif,..."
+    std::string known = OIIO::get_string_attribute("extension_list");
+    std::replace_if(
+        known.begin(), known.end(), [](char c) { return c == ':' || c == ';'; }, ',');
+    return ("," + known + ",").find("," + extension.substr(1) + ",") != std::string::npos;
+}
 
 bool holds_layers(const std::string& path)
 {

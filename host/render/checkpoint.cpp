@@ -126,6 +126,7 @@ std::string header_text(const CheckpointHead& head, const Film& film)
         {"backends", head.backends},
         {"block_shift", head.block_shift},
         {"slices", slices},
+        {"planned", head.planned},
         {"seconds", head.seconds},
         {"rays", head.rays},
         {"paths", head.paths},
@@ -156,6 +157,7 @@ CheckpointHead head_from(const json& in, size_t left)
                         in.at("backends"),
                         in.at("block_shift"),
                         {},
+                        in.value("planned", 0),
                         in.at("seconds"),
                         in.at("rays"),
                         in.at("paths")};

@@ -52,6 +52,7 @@ struct CheckpointHead {
     std::vector<std::string> backends;  // those that had a part in it
     int block_shift = BLOCK_SHIFT;
     std::vector<Slice> slices;  // ascending, apart from each other; one, but for merged ones
+    int planned = 0;            // samples of the whole picture; 0: not known
     double seconds = 0;         // of rendering, summed
     unsigned long long rays = 0;
     unsigned long long paths = 0;

@@ -148,6 +148,7 @@ void add_checkpoint(Checkpoint& all, const Checkpoint& more)
         if (std::count(head.backends.begin(), head.backends.end(), backend) == 0)
             head.backends.push_back(backend);
     std::sort(head.backends.begin(), head.backends.end());
+    head.planned = std::max(head.planned, more.head.planned);
     head.seconds += more.head.seconds;
     head.rays += more.head.rays;
     head.paths += more.head.paths;

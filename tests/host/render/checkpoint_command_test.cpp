@@ -177,6 +177,8 @@ TEST_F(CheckpointCommand, MergeTellsWhatIsMissingAndRefusesWhatDoesNotFit)
     const Outcome apart = run_diptych({"merge", a, b, "-o", out});
     EXPECT_EQ(apart.exit_code, 0) << apart.text();
     EXPECT_NE(apart.err.find("samples 64..128 are in none of the files"), std::string::npos);
+    EXPECT_NE(apart.err.find("samples 192..320 are in none of the files"), std::string::npos)
+        << "of what was planned the end is missing";
 
     const auto refuse = [&](const std::vector<std::string>& words, const std::string& what) {
         ASSERT_EQ(render(words).exit_code, 0);
@@ -199,11 +201,49 @@ TEST_F(CheckpointCommand, MergeTellsWhatIsMissingAndRefusesWhatDoesNotFit)
                    "is no checkpoint");
     expect_refusal(run_diptych({"merge", "--quiet", a, "-o", folder_ / "no/folder.exr"}),
                    "check that its folder");
+    expect_refusal(run_diptych({"merge", "--quiet", a, "-o", folder_ / "x.gif"}),
+                   "x.gif: unknown picture format '.gif'");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "x.gif"));
     const std::string bytes = bytes_of_file(a);
     expect_refusal(
         run_diptych({"merge", "--quiet", a, "-o", folder_.path() / "." / "a.checkpoint"}),
         "is one of the checkpoints to merge");
     EXPECT_EQ(bytes_of_file(a), bytes);
+}
+
+TEST_F(CheckpointCommand, MergeWritesWhatItCanAndNamesTheRest)
+{
+    const std::string a = folder_ / "a.checkpoint", b = folder_ / "b.checkpoint";
+    ASSERT_EQ(render({"--range", "0..160", "--checkpoint", a, "--quiet"}).exit_code, 0);
+    ASSERT_EQ(render({"--range", "160..320", "--checkpoint", b, "--quiet"}).exit_code, 0);
+    const std::string first = folder_ / "x.ck", second = folder_ / "y.ck";
+    std::vector<int> locks;
+    for (const std::string& busy : {first, second}) {
+        locks.push_back(open((busy + ".lock").c_str(), O_RDWR | O_CREAT, 0600));
+        ASSERT_EQ(flock(locks.back(), LOCK_EX), 0);
+    }
+    const Outcome outcome =
+        run_diptych({"merge", a, b, "-o", first, "-o", second, "-o", picture_, "--quiet"});
+    for (const int lock : locks) close(lock);
+    expect_refusal(outcome, first + ": another process is writing it");
+    EXPECT_NE(outcome.err.find(second + ": another process is writing it"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(picture_));
+}
+
+TEST_F(CheckpointCommand, MergeOnAFullDiskWritesWhatIsElsewhere)
+{
+    const std::string a = folder_ / "a.checkpoint", disk = folder_ / "disk";
+    ASSERT_EQ(render({"--range", "0..160", "--checkpoint", a, "--quiet"}).exit_code, 0);
+    std::filesystem::create_directory(disk);
+    if (mount("none", disk.c_str(), "tmpfs", 0, "size=4k") != 0)
+        GTEST_SKIP() << "a small tmpfs may not be mounted here";
+    const Outcome outcome = run_diptych(
+        {"merge", a, "-o", disk + "/x.exr", "-o", disk + "/x.ck", "-o", picture_, "--quiet"});
+    EXPECT_EQ(std::filesystem::is_empty(disk), true);
+    umount(disk.c_str());
+    expect_refusal(outcome, disk + "/x.exr: could not be written whole");
+    EXPECT_NE(outcome.err.find(disk + "/x.ck: could not be written whole"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(picture_));
 }
 
 TEST_F(CheckpointCommand, NamesAllBackendsThatHaveAPartInIt)

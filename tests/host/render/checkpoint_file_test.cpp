@@ -41,15 +41,18 @@ TEST_F(CheckpointFile, ComesBackAsItWasWritten)
     Checkpoint out = rendered({.end = 40, .dispatches = 3});
     out.head.seconds = 1.5;
     out.head.rays = 1ull << 40;
+    out.head.planned = 512;
     write(path_, out);
     const Checkpoint in = read_checkpoint(path_);
     EXPECT_EQ(difference_between(in.head.subject, out.head.subject), "");
     EXPECT_EQ(in.head.backends, out.head.backends);
     EXPECT_EQ(in.head.seconds, 1.5);
     EXPECT_EQ(in.head.rays, 1ull << 40);
+    EXPECT_EQ(in.head.planned, 512);
     const CheckpointHead head = read_checkpoint_head(path_);
     EXPECT_EQ(difference_between(head.subject, out.head.subject), "");
     EXPECT_EQ(fraction_done(head), fraction_done(out.head));
+    EXPECT_EQ(head.planned, 512);
     EXPECT_EQ(fraction_done(path_), fraction_done(out.head));
     EXPECT_GT(fraction_done(path_), 0);
     EXPECT_LT(fraction_done(path_), 1);
