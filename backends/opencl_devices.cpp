@@ -149,8 +149,9 @@ DeviceInfo pick_opencl_device(const std::string& choice)
     for (const DeviceInfo& device : all)
         if (is_chosen(device, choice)) chosen.push_back(device);
     if (chosen.empty())
-        throw std::runtime_error("opencl: no device \"" + choice +
-                                 "\"; there are: " + names_of(all));
+        throw std::runtime_error(
+            "opencl: no device \"" + choice + "\"; there are: " + names_of(all) +
+            (choice == "cpu" ? "; for the CPU without OpenCL give --backend cpu" : ""));
     std::stable_sort(chosen.begin(), chosen.end(), [](const DeviceInfo& a, const DeviceInfo& b) {
         return std::pair(!a.is_usable, a.is_cpu) < std::pair(!b.is_usable, b.is_cpu);
     });

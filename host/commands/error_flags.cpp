@@ -106,6 +106,11 @@ void set_targets(const ErrorFlags& flags, int samples, RenderOptions& options)
         (has_error || has_time) && !are_samples_given ? most_adaptive_samples : samples;
 }
 
+double target_of(const RenderResult& result, const RenderOptions& options)
+{
+    return options.error > 0 ? options.error : result.target;
+}
+
 std::string ending_text(const RenderResult& result, const RenderOptions& options,
                         const ErrorSummary& summary)
 {
@@ -120,7 +125,7 @@ std::string ending_text(const RenderResult& result, const RenderOptions& options
     if (result.target > 0 &&
         (result.ending != Ending::TargetReached || result.unfinished_blocks > 0))
         text += fmt::format("; {} of {} blocks are above {:.3g} JND", result.unfinished_blocks,
-                            result.blocks, result.target);
+                            result.blocks, target_of(result, options));
     const double bar = options.error > 0 ? options.error : 1;
     if (summary.share_unknown > 0)
         text +=

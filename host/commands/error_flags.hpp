@@ -30,6 +30,9 @@ void set_targets(const ErrorFlags& flags, int samples, RenderOptions& options);
 // "30s", "2m", "1.5h", "45": seconds.
 double parse_seconds(const std::string& flag, const std::string& text);
 
+// JND that all blocks were to reach; 0: uniform. The scheduler's own is in its unit, rounded.
+double target_of(const RenderResult& result, const RenderOptions& options);
+
 // A line that says what was asked for and what is predicted.
 std::string ending_text(const RenderResult& result, const RenderOptions& options,
                         const ErrorSummary& summary);

@@ -78,6 +78,21 @@ void tell_audit_progress(int done, int of, bool is_end)
         fmt::print(stderr, "audit: {} blocks are rendered again\n", of);
 }
 
+// What a prediction was worth; where nothing was predicted there is no share of it.
+std::string covered_text(const Audit& audit)
+{
+    return audit.share_covered
+               ? fmt::format("{:.1f} % of those predicted to be", 100 * *audit.share_covered)
+               : "none was predicted to be";
+}
+
+std::string false_text(const Audit& audit)
+{
+    return audit.share_false ? fmt::format("of the blocks predicted below it {:.1f} % above",
+                                           100 * *audit.share_false)
+                             : "no block was predicted below it";
+}
+
 void print_audit(const Audit& audit, double bar)
 {
     if (audit.blocks < audit.chosen)
@@ -85,10 +100,9 @@ void print_audit(const Audit& audit, double bar)
     if (audit.blocks == 0) return;
     fmt::print(stderr,
                "audit: {} blocks rendered again by other samples in {:.1f} s: RMS error {:.3g} JND "
-               "({:.3g} to {:.3g}); {:.1f} % of the pixels within {:.3g} JND; {:.1f} % of those "
-               "predicted to be; of the blocks predicted below it {:.1f} % above\n",
+               "({:.3g} to {:.3g}); {:.1f} % of the pixels within {:.3g} JND; {}; {}\n",
                audit.blocks, audit.seconds, audit.rms, audit.rms_low, audit.rms_high,
-               100 * audit.share_within, bar, 100 * audit.share_covered, 100 * audit.share_false);
+               100 * audit.share_within, bar, covered_text(audit), false_text(audit));
 }
 
 void print_summary(const RenderCommand& command, const RenderResult& result)
@@ -121,6 +135,23 @@ std::string fault_text(const Faults& faults, const std::optional<FaultPlace>& pl
                             place->x, place->y, place->sample, place->buffer, place->bounce,
                             place->stage);
     return text;
+}
+
+// The error is known from batches of samples, of a whole picture.
+void expect_error_is_known(const RenderCommand& command, const RenderOptions& options)
+{
+    if (!command.is_audited) return;
+    if (options.pixel)
+        throw std::runtime_error("--audit: the error of one pixel is not known; leave out --pixel");
+    if (command.scene.is_one_sequence)
+        throw std::runtime_error("--audit: one sequence does not know its error; leave out "
+                                 "--one-sequence");
+    if (options.samples < standard_error_samples)
+        throw std::runtime_error(fmt::format(
+            "--audit: of {} samples a pixel the error is not known; {} are needed: give --samples "
+            "{} or more{}",
+            options.samples, standard_error_samples, standard_error_samples,
+            is_adaptive(options) ? "" : ", or --error or --time"));
 }
 
 // A slice or a pixel is not one to look at, unless a file is named for it.
@@ -241,12 +272,7 @@ int run_render_command(const RenderCommand& command)
     options.viewer = {write.exposure, write.view};
     set_targets(run.error, run.scene.samples, options);
     set_range(run.checkpoint.range, options);
-    if (run.is_audited &&
-        (options.pixel || options.samples < standard_error_samples || run.scene.is_one_sequence))
-        throw std::runtime_error(
-            fmt::format("--audit: the error is not known; give a whole picture "
-                        "{} samples or more without --one-sequence, or --error or --time",
-                        standard_error_samples));
+    expect_error_is_known(run, options);
     ProgressPictures pictures(run, options, write);
     options.stop = &is_interrupted;
     if (options.pixel && !run.checkpoint.file.empty())

@@ -41,6 +41,9 @@ std::string duration(double seconds)
                       : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
+// Null where there is none.
+json json_of(const std::optional<double>& value) { return value ? json(*value) : json(); }
+
 // The first plane of the state with a value that is not finite, of path p.
 const char* faulty_buffer(const StageState& state, size_t p)
 {
@@ -215,7 +218,7 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
              {"share", double(share.paths) / double(std::max(1ull, statistics.paths))},
              {"dropped", share.is_dropped}});
     if (error)
-        report["error"] = {{"target", result.target},
+        report["error"] = {{"target", target_of(result, options)},
                            {"rms", error->rms},
                            {"block_p95", error->block_p95},
                            {"share_within", error->share_within},
@@ -229,8 +232,8 @@ std::string json_report(const RenderCommand& command, const SceneData& scene,
                            {"rms_low", audited->rms_low},
                            {"rms_high", audited->rms_high},
                            {"share_within", audited->share_within},
-                           {"share_covered", audited->share_covered},
-                           {"share_false", audited->share_false},
+                           {"share_covered", json_of(audited->share_covered)},
+                           {"share_false", json_of(audited->share_false)},
                            {"seconds", audited->seconds}};
     if (scene.effects & EFFECT_PROCEDURAL) report["textures"] = texture_fault_json(textures);
     if (fault)

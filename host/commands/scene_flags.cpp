@@ -21,6 +21,7 @@ namespace {
 
 constexpr int largest_side = 65535;
 constexpr int most_samples = 1 << 24;
+constexpr double most_bytes = 512.0 * (1ull << 40);
 
 [[noreturn]] void refuse(const std::string& flag, const std::string& text,
                          const std::string& remedy)
@@ -148,8 +149,12 @@ size_t parse_bytes(const std::string& flag, const std::string& text)
             number.remove_suffix(1);
         }
     }
-    if (!parse_number(number, value) || !(value > 0) || value * unit > 1e15)
+    if (!parse_number(number, value) || !(value > 0))
         refuse(flag, text, "not an amount of memory; give bytes, or 512M, 2G");
+    if (value * unit > most_bytes)
+        refuse(flag, text,
+               fmt::format("more than any machine has; give at most {:.0f}T, as 512M, 2G",
+                           most_bytes / std::ldexp(1.0, 40)));
     return size_t(value * unit);
 }
 

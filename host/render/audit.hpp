@@ -4,6 +4,7 @@
 #include "host/render/render.hpp"
 
 #include <functional>
+#include <optional>
 
 namespace diptych {
 
@@ -13,9 +14,9 @@ struct Audit {
     double rms = 0;      // JND, of all their pixels
     double rms_low = 0;  // ends of its 95 % interval
     double rms_high = 0;
-    double share_within = 0;   // of the pixels: nearer to the new ones than `bar`
-    double share_covered = 0;  // of those predicted to be within `bar`: were so
-    double share_false = 0;    // of the blocks predicted below `bar`: have an RMS above it
+    double share_within = 0;              // of the pixels: nearer to the new ones than `bar`
+    std::optional<double> share_covered;  // of those predicted to be within `bar`: were so
+    std::optional<double> share_false;  // of the blocks predicted below `bar`: have an RMS above it
     double seconds = 0;
 };
 

@@ -49,6 +49,9 @@ TEST(OpenclDevices, ThatDoNotExistAreRefusedWithAdvice)
     else
         EXPECT_NE(message.find("there are: 0 ("), std::string::npos) << message;
     EXPECT_NE(message_for("9999"), "");
+    if (const std::string cpu = message_for("cpu"); !cpu.empty()) {
+        EXPECT_NE(cpu.find("--backend cpu"), std::string::npos) << cpu;
+    }
     EXPECT_NE(message_for("99999999999999999999"), "");
 }
 

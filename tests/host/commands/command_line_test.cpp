@@ -152,6 +152,7 @@ TEST(CommandLine, MistakesAreToldInOneLine)
     expect_refusal({"render", "--debug-kernels"}, "--debug-kernels");
     expect_refusal({"render", "--device", "abacus", "--quiet"}, "abacus");
     expect_refusal({"render", "--backend", "cpu", "--device", "0", "--quiet"}, "--device");
+    expect_refusal({"render", "--memory", "99999999G"}, "give at most 512T");
     expect_refusal({"farm", "--tasks", "2", "--samples", "64", "-o", "a.exr", "--error"},
                    "--error");
     expect_refusal({"farm", "--tasks", "2", "--samples", "64", "-o", "a.exr", "--size", "big"},

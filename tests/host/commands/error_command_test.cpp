@@ -50,6 +50,42 @@ TEST(ErrorCommand, WithoutAValueAimsAtOne)
     EXPECT_NE(limited.err.find("above 1 JND"), std::string::npos) << limited.err;
 }
 
+// In the words of who asked, not rounded to the scheduler's unit.
+TEST(ErrorCommand, OutOfReachNothingIsPredictedAndThatIsSaid)
+{
+    const TestFolder folder;
+    const Outcome outcome = run_diptych({"render", "--size", "16x16", "--samples", "128", "--error",
+                                         "0.01", "--audit", "--json", "-", "-o", folder / "a.png"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.text();
+    EXPECT_NE(outcome.err.find("are above 0.01 JND"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("none was predicted to be; no block was predicted below it"),
+              std::string::npos)
+        << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["error"]["target"], 0.01);
+    EXPECT_TRUE(report["audit"]["share_covered"].is_null());
+    EXPECT_TRUE(report["audit"]["share_false"].is_null());
+}
+
+TEST(ErrorCommand, AnAuditSaysWhatItNeeds)
+{
+    const auto refusal = [](std::vector<std::string> words) {
+        words.insert(words.begin(), {"render", "--size", "16x16", "--audit", "-o", "/tmp/a.png"});
+        const Outcome outcome = run_diptych(words);
+        EXPECT_EQ(outcome.exit_code, 2) << outcome.text();
+        return outcome.err;
+    };
+    const std::string limited = refusal({"--samples", "64", "--error", "1"});
+    EXPECT_NE(limited.find("128 are needed: give --samples 128 or more\n"), std::string::npos)
+        << limited;
+    EXPECT_NE(refusal({"--samples", "64"}).find("128 or more, or --error or --time"),
+              std::string::npos);
+    EXPECT_NE(refusal({"--samples", "256", "--one-sequence"}).find("leave out --one-sequence"),
+              std::string::npos);
+    EXPECT_NE(refusal({"--samples", "256", "--pixel", "1,1"}).find("leave out --pixel"),
+              std::string::npos);
+}
+
 // What is done for one exposure is not for another.
 TEST(ErrorCommand, AnotherExposureGoesOnFromTheCheckpoint)
 {
