@@ -218,7 +218,8 @@ void DeviceGroup::drop(size_t device, const std::string& reason)
 void DeviceGroup::fail()
 {
     halt();
-    throw std::runtime_error("no device is left; the last that failed: " + last_failure_);
+    throw std::runtime_error("no device is left; the last that failed: " + last_failure_ +
+                             "; name others with --device, or use --backend cpu");
 }
 
 void DeviceGroup::trace(const Dispatch& dispatch,

@@ -69,7 +69,7 @@ TEST_F(OpenclBackendTest, LightsTheScene)
         EXPECT_TRUE(std::isfinite(sum));
         for (const int faults : results.fault) EXPECT_EQ(faults, 0);
         EXPECT_GT(backend.statistics().rays, 40u * 24u * QUANTUM);
-        EXPECT_EQ(backend.statistics().paths, blocks(scene).size() * 256 * QUANTUM);
+        EXPECT_EQ(backend.statistics().paths, 40u * 24u * QUANTUM) << "blocks reach beyond";
     });
 }
 
