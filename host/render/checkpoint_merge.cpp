@@ -100,6 +100,15 @@ void add_film(Film& film, const Film& more)
     }
 }
 
+// Whether the quanta of both plans before sample `end` are the same.
+bool begins_alike(const std::vector<Quantum>& a, const std::vector<Quantum>& b, int end)
+{
+    for (size_t q = 0; q < a.size() && a[q].first_sample < end; ++q)
+        if (q >= b.size() || a[q].first_sample != b[q].first_sample || a[q].samples != b[q].samples)
+            return false;
+    return true;
+}
+
 }  // namespace
 
 Film with_batches(Film film, int batches)
@@ -181,13 +190,13 @@ void expect_same_plan(const CheckpointHead& head, const std::string& name, const
     if (done > wanted.end)
         refuse(fmt::format("holds {}, more than up to {}; ask for at least as many",
                            samples_text(wanted.first, done), wanted.end));
-    if (wanted.end != slice.end && done % QUANTUM != 0)
-        refuse(fmt::format("holds {}, which ends within a group of {} samples; name another file",
-                           samples_text(wanted.first, done), QUANTUM));
     if (head.block_shift != grid_of(settings, options).shift || slice.is_timed != wanted.is_timed ||
         slice.is_unbiased != wanted.is_unbiased)
         refuse("was rendered to another kind of target (--samples, --error, --time, --unbiased); "
                "ask for the same kind");
+    if (!begins_alike(plan_of(slice), plan_of(wanted), done))
+        refuse(fmt::format("holds {}, which ends within a group of {} samples; name another file",
+                           samples_text(wanted.first, done), QUANTUM));
 }
 
 RenderState continued(Checkpoint checkpoint, const std::string& name, const Settings& settings,

@@ -273,6 +273,24 @@ TEST_F(CheckpointCommand, GoesOnFromBlocksThatAreDone)
 }
 
 // Programs, files and checkpoints go by what lies between two times, if by times at all.
+// Its first samples are taken one, one, two, four at a time, whatever their number.
+TEST_F(CheckpointCommand, OfATimedRenderGoesOnFromAnyNumberOfSamples)
+{
+    const std::vector<std::string> words = {"--checkpoint", file_, "--quiet", "-o", picture_};
+    const auto timed = [&](const char* time, const char* samples) {
+        std::vector<std::string> all = {"--time", time, "--samples", samples};
+        all.insert(all.end(), words.begin(), words.end());
+        return render(all);
+    };
+    const std::string expected = folder_ / "expected.exr";
+    ASSERT_EQ(render({"--time", "1000", "--samples", "48", "--quiet", "-o", expected}).exit_code,
+              0);
+    ASSERT_EQ(timed("0.001", "24").exit_code, 0);
+    const Outcome longer = timed("1000", "48");
+    EXPECT_EQ(longer.exit_code, 0) << longer.text();
+    EXPECT_EQ(bytes_of_file(picture_), bytes_of_file(expected));
+}
+
 TEST_F(CheckpointCommand, ClocksMayGoBackwards)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
