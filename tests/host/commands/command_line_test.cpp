@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <sys/resource.h>
 
 namespace {
 
@@ -208,6 +209,29 @@ TEST(CommandLine, OnePixelHasTheValueOfThePicture)
     const std::string twin = pixel({"--backend", "twin"});
     EXPECT_EQ(pixel({"--backend", "twin", "--debug-kernels"}), twin);
     EXPECT_EQ(pixel({"--backend", "twin", "--threads", "1", "--memory", "1M"}), twin);
+}
+
+// What the picture takes beside the film counts too, and the program's own limit (ulimit -v).
+TEST(CommandLine, FilmsThatDoNotFitWithTheirPicturesAreRefusedBeforeTheWork)
+{
+    const std::vector<std::string> words = {"render", "--samples", "1",     "--memory",
+                                            "16M",    "-o",        "a.exr", "--size"};
+    const auto render = [&](const std::string& size) {
+        std::vector<std::string> all = words;
+        all.push_back(size);
+        return run_diptych(all);
+    };
+    rlimit old = {};
+    getrlimit(RLIMIT_AS, &old);
+    const rlimit limit = {3ul << 30, old.rlim_max};
+    setrlimit(RLIMIT_AS, &limit);
+    const Outcome fits = render("64x64"), large = render("5000x4000");  // a film of 1.8 GiB
+    setrlimit(RLIMIT_AS, &old);
+    std::filesystem::remove("a.exr");
+    EXPECT_EQ(fits.exit_code, 0) << fits.text();
+    EXPECT_EQ(large.exit_code, 2) << large.text();
+    EXPECT_NE(large.err.find("the picture made of it need 3967 MiB, there are"), std::string::npos)
+        << large.text();
 }
 
 }  // namespace
