@@ -137,6 +137,25 @@ std::string fault_text(const Faults& faults, const std::optional<FaultPlace>& pl
     return text;
 }
 
+// Where the backend has failed on the way.
+void keep_what_is_done(const RenderCommand& command, const SceneData& scene, const Backend& backend,
+                       const RenderOptions& options, const RenderResult& result,
+                       const image::WriteOptions& write)
+{
+    const auto has_samples = [](const BlockState& block) { return block.quanta > 0; };
+    if (std::ranges::none_of(result.schedule.blocks, has_samples)) return;
+    if (!command.outputs.empty()) {
+        image::Picture picture = picture_of(result.film, options.viewer);
+        add_metadata(picture, command, scene, backend, result);
+        image::write_pictures(command.outputs, picture, write);
+    }
+    std::vector<std::string> files = command.outputs;
+    if (!command.checkpoint.file.empty()) files.push_back(command.checkpoint.file);
+    if (!files.empty())
+        fmt::print(stderr, "notice: the render has failed; what was done before is in {}\n",
+                   fmt::join(files, ", "));
+}
+
 // The error is known from batches of samples, of a whole picture.
 void expect_error_is_known(const RenderCommand& command, const RenderOptions& options)
 {
@@ -295,9 +314,15 @@ int run_render_command(const RenderCommand& command)
     pictures.begin(scene.settings[0]);
     ProgressBar bar;
     if (!run.is_quiet) options.progress = [&](const Progress& progress) { bar.show(progress); };
+    std::string failure;
+    options.failure = &failure;
     const RenderResult result = render(*backend, scene, options, std::move(start));
     if (!run.is_quiet) bar.finish();
     const std::string lost = checkpoint.finish(result.film, result.schedule);
+    if (!failure.empty()) {
+        keep_what_is_done(run, scene, *backend, options, result, write);
+        throw std::runtime_error(failure);
+    }
     if (!result.is_complete && result.statistics.paths == 0 && checkpoint.earlier_seconds() == 0)
         fmt::print(stderr, "notice: interrupted before the first samples; pictures are black\n");
 

@@ -61,10 +61,17 @@ public:
 
     RenderResult run()
     {
-        bool is_complete = !lengthen_list();
-        while (!is_complete && may_go_on()) {
-            run_next_dispatch();
+        bool is_complete = false;
+        try {
             is_complete = !lengthen_list();
+            while (!is_complete && may_go_on()) {
+                run_next_dispatch();
+                is_complete = !lengthen_list();
+            }
+        } catch (const std::runtime_error& error) {
+            if (!options_.failure) throw;
+            *options_.failure = error.what();
+            has_failed_ = true;
         }
         RenderResult result{std::move(state_.film), std::move(state_.schedule), plan_,
                             backend_.statistics(), seconds_since(start_)};
@@ -78,7 +85,7 @@ public:
 private:
     bool has_picture() const { return blocks_without_ == 0; }  // every block has a quantum
 
-    bool is_interrupted() const { return options_.stop && options_.stop->load(); }
+    bool is_interrupted() const { return has_failed_ || (options_.stop && options_.stop->load()); }
 
     bool is_time_over() const
     {
@@ -344,6 +351,7 @@ private:
     long long done_ = 0;            // quanta of blocks, also before a resumption
     size_t items_under_way_ = 0;    // at most, where the last dispatch has been left
     bool is_time_used_up_ = false;  // what is left of it is too short
+    bool has_failed_ = false;       // the backend
 };
 
 }  // namespace

@@ -47,6 +47,9 @@ struct RenderOptions {
     int most_items = 0;                               // in a dispatch; 0: what the backend plans
     const std::atomic<bool>* stop = nullptr;          // looked at between dispatches, or more often
     bool stops_at_once = false;  // does not wait for paths under way; they are lost
+    // What a backend throws (std::runtime_error) goes there, and the render ends as if interrupted;
+    // without it, it is thrown on.
+    std::string* failure = nullptr;
 };
 
 struct RenderResult {

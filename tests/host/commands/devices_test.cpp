@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
 namespace {
 
@@ -29,14 +30,16 @@ struct Rendered {
 Rendered render(const TestFolder& folder, std::vector<std::string> flags,
                 std::map<std::string, std::string> environment = two_devices)
 {
-    std::vector<std::string> words = {"render", "--size", "96x64", "-o", folder / "out.exr"};
+    const std::string out = folder / "out.exr";
+    std::filesystem::remove(out);
+    std::vector<std::string> words = {"render", "--size", "96x64", "-o", out};
     if (std::ranges::find(flags, "--samples") == flags.end())
         words.insert(words.end(), {"--samples", "32"});
     words.insert(words.end(), flags.begin(), flags.end());
     Rendered rendered{run_diptych(words, {.seconds = 300, .environment = std::move(environment)}),
                       {}};
-    if (rendered.outcome.exit_code == 0)
-        rendered.pixels = image::beauty_of(image::read_picture(folder / "out.exr")).pixels;
+    if (std::filesystem::exists(out))
+        rendered.pixels = image::beauty_of(image::read_picture(out)).pixels;
     return rendered;
 }
 
@@ -113,6 +116,29 @@ TEST(Devices, ThatFailAreDroppedWithANotice)
     const Rendered none = render(folder, {"--device", "0,1", "--quiet"}, failing);
     EXPECT_EQ(none.outcome.exit_code, 2) << none.outcome.text();
     EXPECT_NE(none.outcome.err.find("diptych: no device is left"), std::string::npos);
+}
+
+TEST(Devices, AloneThatFailsLeavesWhatItHasDone)
+{
+    if (!is_there("--device 0")) GTEST_SKIP() << "no OpenCL device";
+    const TestFolder folder;
+    const std::string file = folder / "c";
+    // one sample of each pixel, then one, two, four, eight and eight
+    const std::vector<std::string> whole_plan = {"--backend", "opencl",    "--time",
+                                                 "1000",      "--samples", "24"};
+    const std::vector<std::string> kept =
+        with(whole_plan, {"--checkpoint", file, "--every", "1000s"});
+    const Rendered whole = render(folder, whole_plan);
+    const Rendered broken = render(folder, kept, {{"DIPTYCH_FAIL_AT", "5"}});
+    EXPECT_EQ(broken.outcome.exit_code, 2) << broken.outcome.text();
+    EXPECT_NE(broken.outcome.err.find("what was done before is in"), std::string::npos)
+        << broken.outcome.text();
+    EXPECT_FALSE(broken.pixels.empty()) << "the picture is written all the same";
+    EXPECT_FALSE(is_same(whole, broken));
+    const Rendered resumed = render(folder, kept);
+    EXPECT_NE(resumed.outcome.err.find("going on from"), std::string::npos)
+        << resumed.outcome.text();
+    EXPECT_TRUE(is_same(whole, resumed)) << resumed.outcome.text();
 }
 
 TEST(Devices, ACheckpointIsContinuedByOthers)
