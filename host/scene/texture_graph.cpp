@@ -3,9 +3,9 @@
 #include "host/scene/texture_arguments.hpp"
 #include "host/scene/uri.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <functional>
-#include <ranges>
 
 namespace diptych {
 namespace {
@@ -69,7 +69,8 @@ void refuse_texture_node(const nlohmann::json& name, const std::vector<std::stri
         fmt::format("{}: {} names no texture node; ", where, printable(dumped(name)));
     if (nodes.empty()) throw SceneError(what + "the scene has none; add one with --texture");
     std::vector<std::string> names;
-    for (const std::string& node : nodes | std::views::take(8)) names.push_back(printable(node));
+    for (size_t k = 0; k < std::min<size_t>(nodes.size(), 8); ++k)
+        names.push_back(printable(nodes[k]));
     throw SceneError(what + fmt::format("there are {}: {}; name one of these", nodes.size(),
                                         fmt::join(names, ", ")));
 }
