@@ -27,6 +27,18 @@ struct Dispatch {
     int results() const { return int(items.size()) << pixel_shift; }
 };
 
+// Whether a dispatch begins with what is under way, of so many samples and pixels each.
+inline bool begins_with(const Dispatch& dispatch, std::span<const WorkItem> items, int samples,
+                        int pixel_shift)
+{
+    const auto is_same = [](const WorkItem& a, const WorkItem& b) {
+        return a.x == b.x && a.y == b.y && a.first_sample == b.first_sample;
+    };
+    return dispatch.samples == samples && dispatch.pixel_shift == pixel_shift &&
+           items.size() <= dispatch.items.size() &&
+           std::equal(items.begin(), items.end(), dispatch.items.begin(), is_same);
+}
+
 // How many paths of the first `items` of a dispatch have a pixel in the picture: blocks at its
 // edges reach beyond.
 inline unsigned long long paths_in_picture(const Dispatch& dispatch, int items,

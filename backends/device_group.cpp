@@ -13,8 +13,8 @@
 namespace diptych {
 namespace {
 
-constexpr int pieces_ahead =
-    4;  // of what each device holds, in a dispatch: few waits for the slowest
+// Of what each device holds, in a dispatch: few waits for the slowest.
+constexpr int pieces_ahead = 4;
 
 // Whether paths stay under way in a device from one dispatch to the next.
 bool is_streaming(const Plan& plan) { return plan.most_items > plan.items; }

@@ -44,12 +44,7 @@ GroupFlight::GroupFlight(int samples, int pixel_shift, std::vector<DevicePace>& 
 
 bool GroupFlight::goes_on(const Dispatch& dispatch) const
 {
-    const auto is_same = [](const WorkItem& a, const WorkItem& b) {
-        return a.x == b.x && a.y == b.y && a.first_sample == b.first_sample;
-    };
-    return dispatch.samples == samples_ && dispatch.pixel_shift == pixel_shift_ &&
-           items_.size() <= dispatch.items.size() &&
-           std::equal(items_.begin(), items_.end(), dispatch.items.begin(), is_same);
+    return begins_with(dispatch, items_, samples_, pixel_shift_);
 }
 
 void GroupFlight::extend(const Dispatch& dispatch, size_t following)
@@ -79,7 +74,15 @@ void GroupFlight::halt()
 void GroupFlight::wait()
 {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, between_wishes);
+    changed_.wait_for(lock, between_wishes, [&] { return has_news_; });
+    has_news_ = false;
+}
+
+void GroupFlight::tell()
+{
+    const std::lock_guard lock(mutex_);
+    has_news_ = true;
+    changed_.notify_all();
 }
 
 int GroupFlight::done() const
@@ -131,7 +134,6 @@ void GroupFlight::hand_in(Holding& holding, int done, const Results& results)
         if (range.count == 0) holding.ranges.erase(holding.ranges.begin());
     }
     holding.items.erase(holding.items.begin(), holding.items.begin() + done);
-    changed_.notify_all();
 }
 
 void GroupFlight::work(size_t device, Backend& backend, bool streams,
@@ -177,14 +179,14 @@ void GroupFlight::work(size_t device, Backend& backend, bool streams,
             list_.forget(int(held.items.size()));
             held = {};
         }
+        tell();
     }
 }
 
 void GroupFlight::give_back(size_t device)
 {
     list_.give_back(device, std::exchange(holdings_[device], {}).ranges);
-    const std::lock_guard lock(mutex_);
-    changed_.notify_all();
+    tell();
 }
 
 }  // namespace diptych

@@ -27,7 +27,7 @@ public:
     // Nobody works any more; what is under way is forgotten.
     void halt();
 
-    // Until something has happened, but not for long.
+    // Until something has happened since the last time, but not for long.
     void wait();
     // Items that are done, from the list's beginning on.
     int done() const;
@@ -55,6 +55,7 @@ private:
 
     void add(Holding& holding, const Range& range);
     void hand_in(Holding& holding, int done, const Results& results);
+    void tell();
 
     const int samples_;
     const int pixel_shift_;
@@ -67,6 +68,7 @@ private:
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
+    bool has_news_ = false;        // since the last wait
     std::vector<WorkItem> items_;  // listed and not taken
     int taken_ = 0;                // the number of the first of them
     std::map<int, Part> parts_;    // done and not taken, by the number of their first item

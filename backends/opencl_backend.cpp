@@ -179,13 +179,8 @@ void OpenclBackend::begin(const Dispatch& dispatch, int capacity, int next_entry
 
 bool OpenclBackend::goes_on(const Flight& flight, const Dispatch& dispatch) const
 {
-    const auto is_same = [](const WorkItem& a, const WorkItem& b) {
-        return a.x == b.x && a.y == b.y && a.first_sample == b.first_sample;
-    };
-    return !flight.items.empty() && flight.samples == dispatch.samples &&
-           flight.pixel_shift == dispatch.pixel_shift &&
-           flight.items.size() <= dispatch.items.size() &&
-           std::equal(flight.items.begin(), flight.items.end(), dispatch.items.begin(), is_same);
+    return !flight.items.empty() &&
+           begins_with(dispatch, flight.items, flight.samples, flight.pixel_shift);
 }
 
 int OpenclBackend::advance(const Dispatch& dispatch, const Pace& pace, Results& results)

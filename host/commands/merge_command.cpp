@@ -102,26 +102,18 @@ void write_as_checkpoint(const std::string& path, const Checkpoint& checkpoint)
     file.put_in_place();
 }
 
-// Where some cannot be written, the others are before an error is thrown that names each.
 void write_all(const MergeCommand& command, const Checkpoint& all, const image::WriteOptions& write)
 {
     std::optional<image::Picture> picture;
-    std::vector<std::string> failures;
-    for (const std::string& path : command.outputs) {
-        try {
-            if (!image::is_picture_name(path)) {
-                write_as_checkpoint(path, all);
-            } else {
-                if (!picture) picture = picture_of(all, {write.exposure, write.view});
-                image::write_picture(path, *picture, write);
-            }
-            if (!command.is_quiet) fmt::print(stderr, "wrote {}\n", path);
-        } catch (const std::runtime_error& error) {
-            failures.push_back(error.what());
+    image::write_each(command.outputs, [&](const std::string& path) {
+        if (!image::is_picture_name(path)) {
+            write_as_checkpoint(path, all);
+        } else {
+            if (!picture) picture = picture_of(all, {write.exposure, write.view});
+            image::write_picture(path, *picture, write);
         }
-    }
-    if (!failures.empty())
-        throw std::runtime_error(fmt::format("{}", fmt::join(failures, "; and ")));
+        if (!command.is_quiet) fmt::print(stderr, "wrote {}\n", path);
+    });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -77,6 +78,10 @@ void write_picture(const std::string& path, const Picture& picture,
 // error is thrown that names each.
 void write_pictures(const std::vector<std::string>& paths, const Picture& picture,
                     const WriteOptions& options = {});
+
+// Likewise, of outputs of several kinds: `write` throws std::runtime_error for one.
+void write_each(const std::vector<std::string>& paths,
+                const std::function<void(const std::string&)>& write);
 
 // Its extension is one that write_picture knows; one of a format that holds layers, and halves; one
 // of a format that can hold display colours in 16 bits.

@@ -239,10 +239,16 @@ void write_picture(const std::string& path, const Picture& picture, const WriteO
 void write_pictures(const std::vector<std::string>& paths, const Picture& picture,
                     const WriteOptions& options)
 {
+    write_each(paths, [&](const std::string& path) { write_picture(path, picture, options); });
+}
+
+void write_each(const std::vector<std::string>& paths,
+                const std::function<void(const std::string&)>& write)
+{
     std::string failures;
     for (const std::string& path : paths) {
         try {
-            write_picture(path, picture, options);
+            write(path);
         } catch (const std::runtime_error& error) {
             failures += (failures.empty() ? "" : "; and ") + std::string(error.what());
         }

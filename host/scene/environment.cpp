@@ -127,10 +127,9 @@ Nodes nodes_of(std::vector<float> map, int width, int height)
 // Leaves what is brighter than the mean: scattering finds the rest as well as light sampling would,
 // which then serves the bright parts alone (Karlik et al. 2019, MIS Compensation). An even map,
 // in which nothing would be left, stays as it is.
-void compensate(Nodes& nodes)
+void compensate(Nodes& nodes, double mean)
 {
     constexpr double least_left = 0.01;  // of the mean
-    const double mean = nodes.mean();
     Nodes above = nodes;
     for (float& value : above.values) value = float(std::max(double(value) - mean, 0.0));
     if (above.mean() > least_left * mean) nodes = std::move(above);
@@ -216,8 +215,8 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
     }
 
     Nodes nodes = nodes_of(luminance_map(map), map.width, map.height);
-    const double power = 4 * pi * nodes.mean();
-    compensate(nodes);
+    const double mean_brightness = nodes.mean();
+    compensate(nodes, mean_brightness);
     const int columns = nodes.columns, rows = nodes.rows + 1;
     std::vector<double> weights;
     weights.reserve(size_t(columns) * size_t(rows));
@@ -243,7 +242,7 @@ double assemble_environment(const Picture& file, double rotation, float scale, S
         data.notices.push_back("environment: " + std::to_string(file.bad_texels) +
                                " values were NaN, infinite or negative; they were replaced");
     }
-    return power * scale;
+    return 4 * pi * mean_brightness * scale;
 }
 
 Picture neutral_sky()
