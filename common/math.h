@@ -30,6 +30,16 @@ SHARED int float_to_int(float x)
     return is_above ? 2147483647 : (is_below ? -2147483647 - 1 : value);
 }
 
+// The upper half of the product. In halves, because vector units multiply 32 bits by 32 to 32.
+SHARED uint multiply_high(uint x, uint y)
+{
+    const uint x_low = x & 0xffffu;
+    const uint y_low = y & 0xffffu;
+    const uint inner = (x >> 16) * y_low + ((x_low * y_low) >> 16);
+    const uint outer = x_low * (y >> 16) + (inner & 0xffffu);
+    return (x >> 16) * (y >> 16) + (inner >> 16) + (outer >> 16);
+}
+
 SHARED float3 select3(int condition, float3 a, float3 b)
 {
     return make_float3(condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z);

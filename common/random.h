@@ -102,24 +102,43 @@ SHARED SampleKey sample_key(uint seed, int sequence_quanta, int pixel, int sampl
     return key;
 }
 
-// One stratified pair in [0, 1)^2.
-SHARED float2 sample_pair(SampleKey key, int dimension)
+// One stratified pair in [0, 1)^2, as fractions of 2^32.
+typedef struct {
+    uint x;
+    uint y;
+} SampleBits;
+
+SHARED SampleBits sample_bits(SampleKey key, int dimension)
 {
     const uint seed = hash_pair(key.seed, (uint)dimension);
     const uint shuffled = reverse_bits(owen_scramble_reversed(reverse_bits(key.index), seed));
     const uint x = owen_scramble_reversed(shuffled, hash_uint(seed ^ 0x68bc21ebu));
     const uint y =
         owen_scramble_reversed(sobol_second_reversed(shuffled), hash_uint(seed ^ 0x02e5be93u));
-    return make_float2(uniform_from_bits(reverse_bits(x)), uniform_from_bits(reverse_bits(y)));
+    SampleBits bits;
+    bits.x = reverse_bits(x);
+    bits.y = reverse_bits(y);
+    return bits;
+}
+
+// The same in 24 bits each.
+SHARED float2 sample_pair(SampleKey key, int dimension)
+{
+    const SampleBits bits = sample_bits(key, dimension);
+    return make_float2(uniform_from_bits(bits.x), uniform_from_bits(bits.y));
 }
 
 // The pairs that a path uses, in order.
 #define PAIR_PIXEL_FILTER 0
 #define PAIR_FIRST_BOUNCE 1
-#define PAIRS_PER_BOUNCE 4  // the last one is free
-#define PAIR_CHOICE 0       // which light
-#define PAIR_LIGHT 1        // a point on the light
-#define PAIR_SCATTER 2      // direction and lobe
+#define PAIRS_PER_BOUNCE 2
+#define PAIR_LIGHT 0    // which light, and which point on it
+#define PAIR_SCATTER 1  // direction and lobe
+
+SHARED SampleBits sample_bounce_bits(SampleKey key, int depth, int pair)
+{
+    return sample_bits(key, PAIR_FIRST_BOUNCE + PAIRS_PER_BOUNCE * depth + pair);
+}
 
 SHARED float2 sample_bounce_pair(SampleKey key, int depth, int pair)
 {

@@ -4,18 +4,30 @@
 #include "common/lights/environment.h"
 #include "common/lights/punctual_light.h"
 #include "common/lights/triangle_light.h"
+#include "common/random.h"
 
-// Vose's alias method; u in [0, 1)^2.
-SHARED int light_choose(const Scene* scene, float2 u)
+typedef struct {
+    int light;
+    float rest;  // a sample in [0, 1) of its own
+} LightChoice;
+
+// Vose's alias method; u: a fraction of 2^32. What the choice leaves of u says where on the light:
+// points on lights of one surface stay as evenly spread as the samples themselves are.
+SHARED LightChoice light_choose(const Scene* scene, uint u)
 {
-    const int count = scene->settings[0].light_count;
-    const int scaled = (int)(u.x * (float)count);
-    const int last = count - 1 + (count == 0);  // nothing lies at 0 where there are no lights
-    const int drawn = scaled > last ? last : scaled;
+    const uint count = (uint)scene->settings[0].light_count;
+    const int drawn = (int)multiply_high(u, count);
+    const float within = uniform_from_bits(u * count);  // wraps: what the upper half leaves
     const int alias = ROW_AT(scene, light_choice, drawn).alias;
     const float threshold = ROW_AT(scene, light_choice, drawn).threshold;
-    const int mask = u.y < threshold ? 0 : -1;  // bits, not a select, which would select addresses
-    return drawn ^ ((drawn ^ alias) & mask);
+    const int is_alias = within >= threshold;
+    const int mask = is_alias ? -1 : 0;  // bits, not a select, which would select addresses
+    const float start = is_alias ? threshold : 0.0f;
+    const float size = is_alias ? 1.0f - threshold : threshold;
+    LightChoice choice;
+    choice.light = drawn ^ ((drawn ^ alias) & mask);
+    choice.rest = math_lesser((within - start) / size, 0.99999994f);
+    return choice;
 }
 
 SHARED LightSample light_sample_select(int is_second, LightSample a, LightSample b)

@@ -22,14 +22,15 @@ SHARED void sample_light(const Scene* scene, const Paths* paths, int i)
         (depth >= 0) & (depth < scene->settings[0].max_bounces) & (kind == SURFACE_LIT);
     const SampleKey key = sample_key(scene->settings[0].seed, scene->settings[0].sequence_quanta,
                                      get_pixel(paths, i), get_sample(paths, i));
-    const float2 choice = sample_bounce_pair(key, depth, PAIR_CHOICE);
-    const float2 on_light = sample_bounce_pair(key, depth, PAIR_LIGHT);
+    const SampleBits bits = sample_bounce_bits(key, depth, PAIR_LIGHT);
 
     const float3 position = get_position(paths, i);
     const float3 face_normal = get_face_normal(paths, i);
     const float3 normal = get_normal(paths, i);
     const float3 origin = position + face_normal * get_position_error(paths, i);
-    const int light = light_choose(scene, choice);
+    const LightChoice choice = light_choose(scene, bits.x);
+    const int light = choice.light;
+    const float2 on_light = make_float2(choice.rest, uniform_from_bits(bits.y));
     const LightSample sample = light_sample(scene, light, origin, on_light);
 
     const Frame frame = frame_of(normal);

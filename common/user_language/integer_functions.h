@@ -102,15 +102,7 @@ SHARED uint tx_clz_uint(uint x)
     return 32u - tx_popcount_uint(d | (d >> 16));
 }
 SHARED int tx_clz_int(int x) { return (int)tx_clz_uint((uint)x); }
-// In halves, because vector units multiply 32 bits by 32 to 32.
-SHARED uint tx_mul_hi_uint(uint x, uint y)
-{
-    const uint x_low = x & 0xffffu;
-    const uint y_low = y & 0xffffu;
-    const uint inner = (x >> 16) * y_low + ((x_low * y_low) >> 16);
-    const uint outer = x_low * (y >> 16) + (inner & 0xffffu);
-    return (x >> 16) * (y >> 16) + (inner >> 16) + (outer >> 16);
-}
+SHARED uint tx_mul_hi_uint(uint x, uint y) { return multiply_high(x, y); }
 SHARED int tx_mul_hi_int(int x, int y)
 {
     const uint product = tx_mul_hi_uint((uint)x, (uint)y);

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 namespace {
@@ -65,8 +66,49 @@ TEST(Lights, AreChosenByTheirProbability)
     }
     EXPECT_NEAR(sum, 1, 1e-6);
     std::mt19937 random(1);
-    for (int k = 0; k < draws; ++k) ++counts[size_t(light_choose(&scene, uniform_pair(random)))];
+    for (int k = 0; k < draws; ++k)
+        ++counts[size_t(light_choose(&scene, unsigned(random())).light)];
     EXPECT_GT(chi_square_probability(expected, counts), 1e-4);
+}
+
+// Whichever light is chosen, and by whichever of the two ways that lead to it.
+TEST(Lights, WhatTheChoiceLeavesIsUniform)
+{
+    constexpr int parts = 8;
+    const SceneData data = lamps_and_sky(8, 4);
+    const Scene scene = view_of(data);
+    std::vector<double> expected, counts(data.lights.size() * parts);
+    for (const Light& light : data.lights)
+        expected.insert(expected.end(), parts, draws * double(light.emission.w) / parts);
+    std::mt19937 random(3);
+    for (int k = 0; k < draws; ++k) {
+        const LightChoice choice = light_choose(&scene, unsigned(random()));
+        ASSERT_GE(choice.rest, 0);
+        ASSERT_LT(choice.rest, 1);
+        ++counts[size_t(choice.light * parts + int(choice.rest * parts))];
+    }
+    EXPECT_GT(chi_square_probability(expected, counts), 1e-4);
+}
+
+// A rectangle of two triangles: of 64 samples 32 fall to each, one in every cell of a grid of 8x4.
+TEST(Lights, PointsOnALampOfTwoTrianglesStayStratified)
+{
+    SceneBuilder builder;
+    const int lamp = builder.add_material({.emission = {1, 1, 1}});
+    builder.place(builder.add_mesh(quad_mesh({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, lamp)));
+    const SceneData data = builder.finish();
+    const Scene scene = view_of(data);
+    ASSERT_EQ(data.lights.size(), 2u);
+    for (int pixel = 0; pixel < 16; ++pixel) {
+        std::array<int, 64> counts{};
+        for (int s = 0; s < 64; ++s) {
+            const SampleBits bits = sample_bits(sample_key(1u, 2, pixel, s), 3);
+            const LightChoice choice = light_choose(&scene, bits.x);
+            const int column = int(choice.rest * 8);
+            ++counts[size_t(choice.light * 32 + column * 4 + int(bits.y >> 30))];
+        }
+        for (int cell = 0; cell < 64; ++cell) EXPECT_EQ(counts[size_t(cell)], 1) << cell;
+    }
 }
 
 // Density over the unit square of uv.

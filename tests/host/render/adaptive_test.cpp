@@ -168,7 +168,7 @@ TEST(Adaptive, AShareOfTheBlocksIsEnough)
     SceneData scene = busy_scene(72, 40);
     const std::unique_ptr<Backend> backend = make_backend("cpu", {});
     backend->upload(scene);
-    RenderOptions options = to_error(1.5);
+    RenderOptions options = to_error(2);
     options.samples = 1 << 14;
     const RenderResult all = render(*backend, scene, options);
     EXPECT_EQ(all.unfinished_blocks, 0);
