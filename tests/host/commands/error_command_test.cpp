@@ -67,6 +67,29 @@ TEST(ErrorCommand, OutOfReachNothingIsPredictedAndThatIsSaid)
     EXPECT_TRUE(report["audit"]["share_false"].is_null());
 }
 
+// Wherever the samples of the audit come from.
+TEST(ErrorCommand, AnAuditBearsOutWhatOpenCLAndSeveralDevicesPredict)
+{
+    const std::vector<std::vector<std::string>> devices = {{"--backend", "opencl"},
+                                                           {"--device", "0,cpu"}};
+    for (const std::vector<std::string>& device : devices) {
+        SCOPED_TRACE(device.back());
+        const TestFolder folder;
+        std::vector<std::string> words = {"render", "--size",        "64x48",  "--error",
+                                          "3",      "--audit",       "--json", "-",
+                                          "-o",     folder / "a.png"};
+        words.insert(words.end(), device.begin(), device.end());
+        const Outcome outcome = run_diptych(words);
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.text();
+        const auto report = nlohmann::json::parse(outcome.out);
+        const double rms = report["error"]["rms"];
+        EXPECT_EQ(report["error"]["unfinished_blocks"], 0);
+        EXPECT_LT(report["audit"]["rms_low"].get<double>(), 2 * rms);
+        EXPECT_GT(report["audit"]["rms_high"].get<double>(), 0.5 * rms);
+        EXPECT_EQ(report["audit"]["share_false"], 0);
+    }
+}
+
 TEST(ErrorCommand, AnAuditSaysWhatItNeeds)
 {
     const auto refusal = [](std::vector<std::string> words) {
@@ -161,9 +184,12 @@ TEST(ErrorCommand, ATimeLimitEndsByTheClockWithAPicture)
 {
     const TestFolder folder;
     const Outcome outcome = run_diptych({"render", "--size", "64x64", "--time", "0.5s", "--refresh",
-                                         "0.1s", "-o", folder / "a.png"});
+                                         "0.1s", "--json", "-", "-o", folder / "a.png"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.text();
     EXPECT_NE(outcome.err.find("ended: the time is over"), std::string::npos) << outcome.err;
+    const double seconds = nlohmann::json::parse(outcome.out)["render"];
+    EXPECT_GT(seconds, 0.25) << "the time is used";
+    EXPECT_LT(seconds, 5) << "and kept, as far as a busy machine lets it";
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.png"});
 }
 

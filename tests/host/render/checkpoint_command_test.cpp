@@ -114,6 +114,8 @@ INSTANTIATE_TEST_SUITE_P(
     , KilledRender,
     testing::Values(
         Work{"uniform", 20, {}}, Work{"to_an_error", 15, {"--error", "1.5"}},
+        Work{"to_a_share", 10, {"--error", "1.5", "--share", "80"}},
+        Work{"unbiased", 10, {"--error", "2", "--unbiased"}},
         Work{"on_opencl", 15, {"--backend", "opencl", "--memory", "16M", "--error", "1.5"}}),
     [](const testing::TestParamInfo<Work>& info) { return std::string(info.param.name); });
 
