@@ -67,9 +67,12 @@ std::vector<TextureFunction> watched(std::vector<TextureFunction> functions,
     return functions;
 }
 
-std::unique_ptr<NativeStage> stage_of(SceneData& scene, bool is_double, TextureReplay::Build build)
+std::unique_ptr<NativeStage> stage_of(SceneData& scene, bool is_double, TextureReplay::Build build,
+                                      const GeneratedFolders& generated)
 {
     NativeStageOptions options;
+    options.generated_dir = generated.write;
+    options.use_generated = generated.use;
     options.kind = is_double ? NativeStageKind::reference : NativeStageKind::scalar;
     options.is_debug = build == TextureReplay::Build::debug;
     const bool has_values = build == TextureReplay::Build::watched_values;
@@ -125,9 +128,10 @@ struct TextureReplay::Implementation {
     PathView path_view;
     WorkItem item{};
 
-    Implementation(SceneData& scene_in, bool is_double, Build build)
+    Implementation(SceneData& scene_in, bool is_double, Build build,
+                   const GeneratedFolders& generated)
         : scene(scene_in), kernels(is_double ? kernels_reference::set : kernels_scalar::set),
-          stage(stage_of(scene_in, is_double, build))
+          stage(stage_of(scene_in, is_double, build, generated))
     {
         if (!stage->kernels().watch)
             throw std::runtime_error("procedural textures: the compiled stage is of another "
@@ -163,8 +167,9 @@ struct TextureReplay::Implementation {
     }
 };
 
-TextureReplay::TextureReplay(SceneData& scene, bool is_double, Build build)
-    : implementation_(std::make_unique<Implementation>(scene, is_double, build))
+TextureReplay::TextureReplay(SceneData& scene, bool is_double, Build build,
+                             const GeneratedFolders& generated)
+    : implementation_(std::make_unique<Implementation>(scene, is_double, build, generated))
 {
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "backends/backend.hpp"
+#include "backends/textures/texture_source.hpp"
 
 #include <array>
 #include <memory>
@@ -50,7 +51,8 @@ public:
     };
     // is_double: in double precision. Completes the scene, which must outlive this, with its tree
     // where textures ask for occlusion.
-    TextureReplay(SceneData& scene, bool is_double, Build build = Build::plain);
+    TextureReplay(SceneData& scene, bool is_double, Build build = Build::plain,
+                  const GeneratedFolders& generated = {});
     ~TextureReplay();
     TextureReplay(const TextureReplay&) = delete;
     TextureReplay& operator=(const TextureReplay&) = delete;

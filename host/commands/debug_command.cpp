@@ -234,6 +234,11 @@ std::vector<std::string> replay_program(const DebugCommand& command)
     for (const std::string& value : flags.load.texture_values)
         program.insert(program.end(), {"--set", value});
     if (flags.load.allow_outside) program.push_back("--allow-outside");
+    const BackendOptions& options = command.device.options;
+    if (!options.generated_dir.empty())
+        program.insert(program.end(), {"--generated-dir", options.generated_dir});
+    if (!options.use_generated.empty())
+        program.insert(program.end(), {"--use-generated", options.use_generated});
     return program;
 }
 
@@ -252,7 +257,13 @@ int replay(const DebugCommand& command, SceneFlags flags)
 {
     const TextureCapture capture = read_capture(command.replay);
     SceneData scene = load_for_replay(capture, std::move(flags), command.replay);
-    if (command.is_print) return print_replay(capture, scene, command.replay);
+    const BackendOptions options = options_from_flags(command.device);
+    if (command.is_print) {
+        for (const std::string& line : generated_notices(scene, command.device))
+            fmt::print(stderr, "notice: {}\n", line);
+        return print_replay(capture, scene, command.replay,
+                            {options.generated_dir, options.use_generated});
+    }
     std::string node = node_of(command);
     const CapturedHit& hit = capture.hits.at(0);
     if (node.empty()) node = hit.results.at(0).node;

@@ -283,9 +283,11 @@ SceneData load_for_replay(const TextureCapture& capture, SceneFlags flags, const
     return scene;
 }
 
-int print_replay(const TextureCapture& capture, SceneData& scene, const std::string& path)
+int print_replay(const TextureCapture& capture, SceneData& scene, const std::string& path,
+                 const GeneratedFolders& generated)
 {
-    TextureReplay replay(scene, capture.backend == "double", TextureReplay::Build::debug);
+    TextureReplay replay(scene, capture.backend == "double", TextureReplay::Build::debug,
+                         generated);
     const int pixel = capture.hits[0].hit.pixel;
     fmt::print("{}: pixel {},{} on {} ({}), {} hits\n", path, pixel & 0xffff, unsigned(pixel) >> 16,
                capture.backend, capture.device, capture.hits.size());

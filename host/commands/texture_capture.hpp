@@ -39,6 +39,7 @@ TextureCapture read_capture(const std::string& path);
 SceneData load_for_replay(const TextureCapture& capture, SceneFlags flags, const std::string& path);
 
 // Runs and prints every hit. 0: all results have the device's bits, 1: some have not.
-int print_replay(const TextureCapture& capture, SceneData& scene, const std::string& path);
+int print_replay(const TextureCapture& capture, SceneData& scene, const std::string& path,
+                 const GeneratedFolders& generated);
 
 }  // namespace diptych

@@ -393,6 +393,36 @@ TEST_F(Replay, StopsInTheDebuggerWithTheDevicesValue)
               solo("paint", "12,8", "opencl"));
 }
 
+TEST_F(Replay, RunsTheEditedCopyOfTheGeneratedCode)
+{
+    const Outcome captured = capture("twin");
+    ASSERT_EQ(captured.exit_code, 0) << captured.text();
+    ASSERT_EQ(replay({"--print", "--generated-dir", "code"}).exit_code, 0);
+    EXPECT_EQ(replay({"--print", "--use-generated", "code"}).exit_code, 0);
+
+    std::ifstream in(folder_ / "code/functions.hpp");
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    const size_t at = text.find("stripe * tint");
+    ASSERT_NE(at, std::string::npos) << text;
+    folder_.write("code/functions.hpp", text.insert(at, "0.5f * "));
+    const Outcome edited = replay({"--print", "--use-generated", "code"});
+    EXPECT_EQ(edited.exit_code, 1) << edited.text();
+    EXPECT_NE(edited.out.find(": the device has "), std::string::npos) << edited.text();
+    const Outcome refused =
+        replay({"--print", "--generated-dir", "code", "--use-generated", "code"});
+    EXPECT_EQ(refused.exit_code, 2) << "it would be overwritten";
+    if (const std::string why = why_no_debugger("gdb"); !why.empty()) GTEST_SKIP() << why;
+    const auto value_returned = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words = {"--texture", "paint", "--line", at_line("stripe * tint"),
+                                          "--execute", "finish"};
+        words.insert(words.end(), more.begin(), more.end());
+        return vector_after(replay(words).out, "Value returned is $1 = ");
+    };
+    const std::array<float, 3> whole = value_returned({}),
+                               half = value_returned({"--use-generated", "code"});
+    for (size_t c = 0; c < 3; ++c) EXPECT_EQ(half[c], 0.5f * whole[c]);
+}
+
 TEST_F(Replay, SaysWhatIsWrongWithTheFile)
 {
     const auto expect_refusal = [&](const std::string& says) {
