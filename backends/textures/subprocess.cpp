@@ -57,7 +57,8 @@ Finished run_program(const std::vector<std::string>& arguments)
     rusage used{};
     while (wait4(child, &status, 0, &used) < 0 && errno == EINTR) {
     }
-    finished.seconds = double(used.ru_utime.tv_sec) + 1e-6 * double(used.ru_utime.tv_usec);
+    for (const timeval& time : {used.ru_utime, used.ru_stime})  // as the limit counts
+        finished.seconds += double(time.tv_sec) + 1e-6 * double(time.tv_usec);
     finished.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     return finished;
 }
