@@ -135,12 +135,7 @@ SHARED float2 sample_pair(SampleKey key, int dimension)
 #define PAIR_LIGHT 0    // which light, and which point on it
 #define PAIR_SCATTER 1  // direction and lobe
 
-SHARED SampleBits sample_bounce_bits(SampleKey key, int depth, int pair)
+SHARED int bounce_dimension(int depth, int pair)
 {
-    return sample_bits(key, PAIR_FIRST_BOUNCE + PAIRS_PER_BOUNCE * depth + pair);
-}
-
-SHARED float2 sample_bounce_pair(SampleKey key, int depth, int pair)
-{
-    return sample_pair(key, PAIR_FIRST_BOUNCE + PAIRS_PER_BOUNCE * depth + pair);
+    return PAIR_FIRST_BOUNCE + PAIRS_PER_BOUNCE * depth + pair;
 }

@@ -40,7 +40,7 @@ SHARED void sample_bsdf(const Scene* scene, const Paths* paths, int i)
     }
     const SampleKey key = sample_key(scene->settings[0].seed, scene->settings[0].sequence_quanta,
                                      get_pixel(paths, i), get_sample(paths, i));
-    const float2 u = sample_bounce_pair(key, depth, PAIR_SCATTER);
+    const float2 u = sample_pair(key, bounce_dimension(depth, PAIR_SCATTER));
     const float3 face_normal = get_face_normal(paths, i);
     const Frame frame = frame_of(get_normal(paths, i));
     ScatterSample sample;

@@ -22,7 +22,7 @@ SHARED void sample_light(const Scene* scene, const Paths* paths, int i)
         (depth >= 0) & (depth < scene->settings[0].max_bounces) & (kind == SURFACE_LIT);
     const SampleKey key = sample_key(scene->settings[0].seed, scene->settings[0].sequence_quanta,
                                      get_pixel(paths, i), get_sample(paths, i));
-    const SampleBits bits = sample_bounce_bits(key, depth, PAIR_LIGHT);
+    const SampleBits bits = sample_bits(key, bounce_dimension(depth, PAIR_LIGHT));
 
     const float3 position = get_position(paths, i);
     const float3 face_normal = get_face_normal(paths, i);
