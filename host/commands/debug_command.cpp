@@ -253,14 +253,19 @@ std::vector<std::string> replay_program(const DebugCommand& command)
                              "--debugger, or see the command with --print");
 }
 
+void print_generated_notices(const SceneData& scene, const DeviceFlags& device)
+{
+    for (const std::string& line : generated_notices(scene, device))
+        fmt::print(stderr, "notice: {}\n", line);
+}
+
 int replay(const DebugCommand& command, SceneFlags flags)
 {
     const TextureCapture capture = read_capture(command.replay);
     SceneData scene = load_for_replay(capture, std::move(flags), command.replay);
     const BackendOptions options = options_from_flags(command.device);
     if (command.is_print) {
-        for (const std::string& line : generated_notices(scene, command.device))
-            fmt::print(stderr, "notice: {}\n", line);
+        print_generated_notices(scene, command.device);
         return print_replay(capture, scene, command.replay,
                             {options.generated_dir, options.use_generated});
     }
@@ -405,8 +410,7 @@ int run_debug_command(const DebugCommand& command)
     if (!command.replay.empty()) return replay(command, std::move(flags));
     const std::optional<Pixel> pixel = parse_pixel(command.pixel, flags.size);
     SceneData scene = load_from_flags(flags);
-    for (const std::string& line : generated_notices(scene, command.device))
-        fmt::print(stderr, "notice: {}\n", line);
+    print_generated_notices(scene, command.device);
     const DebugStop stop = find_stop(scene, node_of(command), pixel->x, pixel->y, command.line);
     const std::vector<std::string> program = program_of(command);
     if (command.is_vscode) {

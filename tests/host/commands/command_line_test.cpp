@@ -135,6 +135,10 @@ TEST(CommandLine, MistakesAreToldInOneLine)
         expect_refusal({command, "--nonsense"}, "see diptych " + command + " --help");
     for (const char* command : {"render", "compare", "explain", "devices", "selftest"})
         expect_refusal({command, "--nonsense"}, "--nonsense");  // others ask for their scene first
+    expect_refusal({"render", "--error", "0"}, "from 0.01 to 100");
+    expect_refusal({"render", "--time", "0"}, "give seconds above 0");
+    expect_refusal({"render", "--unbiased"}, "add --error");
+    expect_refusal({"render", "--memory", "1K", "--threads", "2"}, "raise it or lower --threads");
     expect_refusal({"render", "--share", "95"},
                    "--share: of the blocks below which error? add --error");
     expect_refusal({"render", "--share", "95", "--unbiased", "--error"},
